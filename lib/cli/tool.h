@@ -1,0 +1,46 @@
+// tool.h: what all four programs share: common options, the one catch, exit statuses, interruption.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace kiln::cli {
+
+inline constexpr const char* version = "0.1.0";
+
+enum Status : int { done = 0, failed = 1, wrong_usage = 2, not_converged = 3, interrupted = 130, closed_pipe = 141 };
+
+/// Options that every tool has. files and output are for tools that read or write streams.
+struct Common {
+    std::vector<std::string> files;
+    std::string output = "-";
+    bool text = false;
+    bool quiet = false;
+    bool verbose = false;
+    int threads = 0;  // 0: as many as the machine has
+
+    /// Adds FILE..., -o, --text, -q, -v, --threads, --config, --version to the app. `reads`: takes input files.
+    void add_to(CLI::App& app, bool reads = true);
+};
+
+/// Runs a tool: body adds its options through `setup` in its caller, parses, works. This function is the only catch: it turns
+/// exceptions into one sentence "tool: …" on stderr and an exit status.
+int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body);
+
+/// Parses argv; sets the number of threads. Throws CLI::ParseError for run() to report (help and version come that way too).
+void parse(CLI::App& app, int argc, char** argv, const Common& common);
+
+/// The history entry of this run: tool, version, the arguments that bear on the result (not threads, output, verbosity), summary.
+Json history_entry(const std::string& tool, int argc, char** argv, const Json& summary);
+
+/// True once SIGINT or SIGTERM has arrived; long loops ask between steps, write what they have, and end with `interrupted`.
+bool stop_requested();
+
+/// One warning sentence on stderr.
+void warn(const std::string& tool, const std::string& sentence);
+
+}  // namespace kiln::cli

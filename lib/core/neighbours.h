@@ -1,0 +1,29 @@
+// neighbours.h: the only neighbour search, a hierarchy of periodic cell grids that is O(N) for any mix of sizes.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/box.h"
+
+namespace kiln {
+
+/// Particle j, moved by image, is near particle i. Each pair stands once; i < j, or i == j for a particle near its own image.
+struct Pair {
+    std::int32_t i, j;
+    Image image;
+};
+
+/// All pairs, periodic images included, with |x_j + image L - x_i| < reach_i + reach_j.
+///
+/// position: N centres, m, inside the box or not; reach: N distances > 0, m. Boxes shorter than the reach are searched through as
+/// many images as it takes. Sorted by i, then j, then image; the order does not depend on the number of threads.
+/// Throws Error where an image index leaves the range of a signed byte.
+std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std::span<const double> reach);
+
+/// Vector from i to the image of j, m.
+inline Vec3 pair_vector(const Box& box, std::span<const Vec3> position, const Pair& pair) {
+    return position[static_cast<std::size_t>(pair.j)] + box.shift(pair.image) - position[static_cast<std::size_t>(pair.i)];
+}
+
+}  // namespace kiln

@@ -1,0 +1,23 @@
+// types.h: the few types that every part of Kiln shares.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace kiln {
+
+using Vec3 = Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+
+/// Periodic image: how many box lengths along x, y, z are added to a position.
+using Image = std::array<std::int8_t, 3>;
+
+/// Something could not be done; what() is one sentence that names the datum. Exit status 1.
+struct Error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace kiln

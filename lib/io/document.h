@@ -1,0 +1,47 @@
+// document.h: the stream of documents, a JSON line each with binary arrays behind it; docs/dem-state.5 is its specification.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "core/array.h"
+#include "core/types.h"
+
+namespace kiln::io {
+
+/// One document: its JSON header without the arrays, and the arrays under "particles" and "bonds" in the order they stood.
+struct Document {
+    Json header;
+    std::vector<NamedArray> particles;
+    std::vector<NamedArray> bonds;
+    bool has_bonds = false;
+    std::string place;  // "file, document 3", for messages
+};
+
+/// Reads documents one after the other from an open file or pipe.
+class DocumentReader {
+   public:
+    /// file stays the caller's; name is what messages call it.
+    DocumentReader(std::FILE* file, std::string name);
+
+    /// Fills the next document; false at the end of the stream.
+    /// Throws Error that names the file, the document and what was wanted: truncation, bad JSON, a repeated key, unknown array type,
+    /// shape or size that disagree, a payload longer than the file. Memory taken never runs ahead of the bytes that have arrived.
+    bool next(Document& document);
+
+   private:
+    bool read_line(std::string& line);
+    void read_payload(Document& document, std::uint64_t bytes);
+
+    std::FILE* file_;
+    std::string name_;
+    std::size_t number_ = 0;
+    std::vector<char> buffer_;
+};
+
+/// Writes the document to the file: as one text line, or with binary arrays behind the header.
+/// Throws Error where a number cannot be held by text (NaN, infinity) or the file takes no more.
+void write_document(std::FILE* file, const std::string& name, const Document& document, bool text);
+
+}  // namespace kiln::io

@@ -1,0 +1,63 @@
+// files.h: input from files and stdin, output to stdout or to a file that appears under its name only when it is whole.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/state.h"
+#include "io/document.h"
+
+namespace kiln::io {
+
+/// The reader of the stream went away; the tool ends silently.
+struct ClosedPipe : std::exception {};
+
+/// The documents of several files, one after the other; no file, or "-", is stdin.
+class Input {
+   public:
+    explicit Input(std::vector<std::string> files);
+    ~Input();
+
+    /// Next document; nothing at the end. Throws Error for a file that cannot be opened or read, or if there was no document at all.
+    std::optional<Document> next();
+
+    /// Next document as a state; throws Error where it is another kind of document.
+    std::optional<State> next_state();
+
+   private:
+    std::vector<std::string> files_;
+    std::size_t opened_ = 0;
+    std::size_t documents_ = 0;
+    std::FILE* file_ = nullptr;
+    std::unique_ptr<DocumentReader> reader_;
+};
+
+/// An output file or stdout ("-"). A file is written beside its final name and renamed by commit(); without commit() nothing appears.
+class Output {
+   public:
+    /// Throws Error if the file cannot be created, or if binary documents would go to a terminal.
+    Output(std::string name, bool text);
+    ~Output();
+    Output(const Output&) = delete;
+    Output& operator=(const Output&) = delete;
+
+    void write(const Document& document);
+    void write(State state);
+    /// One line of JSON.
+    void write(const Json& line);
+    void write_text(const std::string& text);
+
+    /// Flushes, checks, and gives the file its final name. Throws Error on a full disk, ClosedPipe on a closed pipe.
+    void commit();
+
+   private:
+    std::string name_;
+    std::string partial_;  // the file being written
+    bool text_;
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace kiln::io

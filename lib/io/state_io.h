@@ -1,0 +1,25 @@
+// state_io.h: a state from a document and a document from a state; every rule about the names and values inside is here.
+#pragma once
+
+#include "core/state.h"
+#include "io/document.h"
+
+namespace kiln::io {
+
+inline constexpr int format_version = 1;
+
+/// Checks the document and moves its arrays into a state.
+/// Throws Error naming document, array and row: not dem-state, unknown version, units other than SI, wrong type or shape, index out of
+/// range, NaN or infinity, radius <= 0, unknown material, box not orthogonal, repeated id.
+State state_from(Document document);
+
+/// The state as a document; arrays are moved out of it.
+Document document_from(State state);
+
+/// JSON of one material, as it stands in a document.
+Json material_json(const Material& material);
+
+/// Material from JSON; place is for the message of the Error thrown for a value that is no finite number or out of its range.
+Material material_from(const Json& json, const std::string& place);
+
+}  // namespace kiln::io

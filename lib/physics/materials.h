@@ -1,0 +1,20 @@
+// materials.h: built-in materials with their sources, and what a calculation asks of a material.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/state.h"
+
+namespace kiln::physics {
+
+/// A built-in material by name. Throws Error that lists the known names.
+Material builtin_material(const std::string& name);
+
+/// Names of the built-in materials.
+std::vector<std::string> builtin_names();
+
+/// A material's value, or Error "material 'X' has no KEY".
+double required(const std::optional<double>& value, const Material& material, const std::string& key);
+
+}  // namespace kiln::physics
