@@ -1,8 +1,8 @@
 // neighbours.cpp: one cell grid for each class of sizes; a particle searches the grids of its own class and of the larger ones.
 //
-// A class holds reaches within a factor of two and its cells are two of its largest reaches wide, so every search visits at most three
-// or four cells an axis, however different the particles are. A periodic search counts cells beyond the box as well: the box that such
-// a cell lies in is the image. Cells stand in a table by their index modulo its length, so an empty box costs no memory.
+// A class holds reaches within a factor of two and its cells are two of its largest reaches wide, so every search visits at most
+// three or four cells an axis, however different the particles are. A periodic search counts cells beyond the box as well: the box
+// that such a cell lies in is the image. Cells stand in a table by their index modulo its length, so an empty box costs no memory.
 #include "core/neighbours.h"
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-constexpr std::int64_t most_cells = 1 << 20;    // along an axis, so that a cell's index fits into 60 bits
-constexpr double rounding_margin = 1e-9;        // in cells, so that no pair is lost to the rounding of a cell coordinate
-constexpr double farthest_home = 1e9;           // boxes that a position may be away from the box
-constexpr std::size_t chunk_particles = 512;    // particles a task; fixed, whatever the number of threads
+constexpr std::int64_t most_cells = 1 << 20;  // along an axis, so that a cell's index fits into 60 bits
+constexpr double rounding_margin = 1e-9;      // in cells, so that no pair is lost to the rounding of a cell coordinate
+constexpr double farthest_home = 1e9;         // boxes that a position may be away from the box
+constexpr std::size_t chunk_particles = 512;  // particles a task; fixed, whatever the number of threads
 
 struct Entry {
     Vec3 position;                     // m, as given
@@ -47,8 +47,8 @@ struct Frame {
 
 struct Grid {
     std::array<std::int64_t, 3> cells;
-    double largest_reach;              // m
-    std::vector<std::size_t> begin;    // first entry of each place in the table, and the end
+    double largest_reach;            // m
+    std::vector<std::size_t> begin;  // first entry of each place in the table, and the end
     std::vector<Entry> entries;
 
     std::uint64_t index(const Cell& cell) const {
@@ -74,7 +74,8 @@ Frame frame_of(const Box& box, std::span<const Vec3> position) {
         if (!box.periodic[static_cast<std::size_t>(axis)]) continue;
         frame.start[axis] = box.origin[axis];
         frame.extent[axis] = box.lengths[axis];
-        if (std::max(std::abs(low[axis] - box.origin[axis]), std::abs(high[axis] - box.origin[axis])) > farthest_home * box.lengths[axis])
+        if (std::max(std::abs(low[axis] - box.origin[axis]), std::abs(high[axis] - box.origin[axis])) >
+            farthest_home * box.lengths[axis])
             throw Error("a particle lies more than 1e9 box lengths outside the box along axis " + std::to_string(axis));
     }
     return frame;
@@ -119,8 +120,10 @@ std::vector<Grid> build_grids(const Frame& frame, std::span<const Vec3> position
         for (Entry& entry : grid.entries) {
             Cell cell;
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double fraction = frame.fraction(entry.position[static_cast<int>(axis)], static_cast<int>(axis), entry.home[axis]);
-                cell[axis] = std::min(static_cast<std::int64_t>(fraction * static_cast<double>(grid.cells[axis])), grid.cells[axis] - 1);
+                const double fraction =
+                    frame.fraction(entry.position[static_cast<int>(axis)], static_cast<int>(axis), entry.home[axis]);
+                cell[axis] =
+                    std::min(static_cast<std::int64_t>(fraction * static_cast<double>(grid.cells[axis])), grid.cells[axis] - 1);
             }
             entry.cell = grid.index(cell);
         }
@@ -142,7 +145,8 @@ Visit visit_axis(const Frame& frame, const Grid& grid, const Entry& entry, int a
     std::int32_t home = 0;
     const double cells = static_cast<double>(grid.cells[at]);
     const double centre = frame.fraction(entry.position[axis], axis, home) * cells;
-    const double range = (entry.reach + grid.largest_reach) / frame.extent[axis] * cells * (1.0 + rounding_margin) + rounding_margin;
+    const double range =
+        (entry.reach + grid.largest_reach) / frame.extent[axis] * cells * (1.0 + rounding_margin) + rounding_margin;
     if (frame.periodic[at])
         return {static_cast<std::int64_t>(std::floor(centre - range)), static_cast<std::int64_t>(std::floor(centre + range)),
                 grid.cells[at]};
@@ -154,7 +158,8 @@ bool is_positive(const std::array<std::int64_t, 3>& image) { return image > std:
 
 /// Adds the pair if the two are near. image: whole boxes from entry's copy of the box to the other's.
 /// Throws Error if an image does not fit.
-void add_if_near(const Box& box, const Entry& entry, const Entry& other, std::array<std::int64_t, 3> image, std::vector<Pair>& pairs) {
+void add_if_near(const Box& box, const Entry& entry, const Entry& other, std::array<std::int64_t, 3> image,
+                 std::vector<Pair>& pairs) {
     Vec3 apart = other.position - entry.position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         image[axis] += entry.home[axis] - other.home[axis];
@@ -169,8 +174,9 @@ void add_if_near(const Box& box, const Entry& entry, const Entry& other, std::ar
         const std::int64_t signed_image = in_order ? image[axis] : -image[axis];
         pair.image[axis] = static_cast<std::int8_t>(signed_image);
         if (pair.image[axis] != signed_image)
-            throw Error("particle rows " + std::to_string(pair.i) + " and " + std::to_string(pair.j) + ": they are neighbours over " +
-                        std::to_string(signed_image) + " boxes along axis " + std::to_string(axis) + ", more than an image can hold");
+            throw Error("particle rows " + std::to_string(pair.i) + " and " + std::to_string(pair.j) +
+                        ": they are neighbours over " + std::to_string(signed_image) + " boxes along axis " + std::to_string(axis) +
+                        ", more than an image can hold");
     }
     pairs.push_back(pair);
 }
@@ -200,7 +206,8 @@ void search(const Box& box, const Frame& frame, const Entry& entry, const Grid& 
 }
 
 /// Pairs of the entries [first, last) of a grid with their own class and all larger ones.
-std::vector<Pair> search_chunk(const Box& box, const Frame& frame, std::span<const Grid> from_own, std::size_t first, std::size_t last) {
+std::vector<Pair> search_chunk(const Box& box, const Frame& frame, std::span<const Grid> from_own, std::size_t first,
+                               std::size_t last) {
     std::vector<Pair> pairs;
     for (std::size_t at = first; at < last; ++at)
         for (std::size_t level = 0; level < from_own.size(); ++level)
@@ -220,14 +227,16 @@ std::vector<Pair> sorted_pairs(std::span<const std::vector<Pair>> chunks, std::s
         for (const Pair& pair : chunk) pairs[next[static_cast<std::size_t>(pair.i)]++] = pair;
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < particles; ++row)
-        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(begin[row]), pairs.begin() + static_cast<std::ptrdiff_t>(begin[row + 1]),
+        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(begin[row]),
+                  pairs.begin() + static_cast<std::ptrdiff_t>(begin[row + 1]),
                   [](const Pair& a, const Pair& b) { return a.j != b.j ? a.j < b.j : a.image < b.image; });
     return pairs;
 }
 
 void check(const Box& box, std::span<const Vec3> position, std::span<const double> reach) {
     if (position.size() != reach.size())
-        throw Error("neighbour search: " + std::to_string(position.size()) + " positions but " + std::to_string(reach.size()) + " reaches");
+        throw Error("neighbour search: " + std::to_string(position.size()) + " positions but " + std::to_string(reach.size()) +
+                    " reaches");
     double largest = 0.0;
     for (std::size_t row = 0; row < reach.size(); ++row) {
         if (!(reach[row] > 0.0) || !std::isfinite(reach[row]))
@@ -261,7 +270,8 @@ std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std
 #pragma omp parallel for schedule(dynamic)
     for (std::size_t task = 0; task < tasks.size(); ++task) {
         try {  // an exception must not leave a parallel loop
-            chunks[task] = search_chunk(box, frame, std::span(grids).subspan(tasks[task].grid), tasks[task].first, tasks[task].last);
+            chunks[task] =
+                search_chunk(box, frame, std::span(grids).subspan(tasks[task].grid), tasks[task].first, tasks[task].last);
         } catch (const Error& error) {
             errors[task] = error.what();
         }

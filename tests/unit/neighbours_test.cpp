@@ -47,7 +47,8 @@ std::vector<Pair> brute_force(const Sample& sample, int images) {
                 for (int y = -most[1]; y <= most[1]; ++y)
                     for (int z = -most[2]; z <= most[2]; ++z) {
                         if (i == j && std::tuple(x, y, z) <= std::tuple(0, 0, 0)) continue;
-                        const Pair pair{i, j, {static_cast<std::int8_t>(x), static_cast<std::int8_t>(y), static_cast<std::int8_t>(z)}};
+                        const Pair pair{
+                            i, j, {static_cast<std::int8_t>(x), static_cast<std::int8_t>(y), static_cast<std::int8_t>(z)}};
                         const double near = sample.reach[static_cast<std::size_t>(i)] + sample.reach[static_cast<std::size_t>(j)];
                         if (pair_vector(sample.box, sample.position, pair).norm() < near) pairs.push_back(pair);
                     }
