@@ -27,15 +27,16 @@ struct Common {
     void add_to(CLI::App& app, bool reads = true);
 };
 
-/// Runs a tool: body adds its options through `setup` in its caller, parses, works. This function is the only catch: it turns
+/// Runs a tool: body adds its options to an app, parses, works and returns its status. This function is the only catch: it turns
 /// exceptions into one sentence "tool: …" on stderr and an exit status.
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body);
 
-/// Parses argv; sets the number of threads. Throws CLI::ParseError for run() to report (help and version come that way too).
+/// Parses argv; sets the number of threads. Throws CLI::ParseError for run() to report; --help and --version end the tool there.
 void parse(CLI::App& app, int argc, char** argv, const Common& common);
 
-/// The history entry of this run: tool, version, the arguments that bear on the result (not threads, output, verbosity), summary.
-Json history_entry(const std::string& tool, int argc, char** argv, const Json& summary);
+/// The history entry of this run: tool, version, the options that bear on the result (those given on the command line or in a
+/// config file; not files, threads, output or verbosity), the seed if the tool has one, and a summary of what was done.
+Json history_entry(const std::string& tool, const CLI::App& app, const Json& summary);
 
 /// True once SIGINT or SIGTERM has arrived; long loops ask between steps, write what they have, and end with `interrupted`.
 bool stop_requested();

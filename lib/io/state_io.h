@@ -22,4 +22,11 @@ Json material_json(const Material& material);
 /// Material from JSON; place is for the message of the Error thrown for a value that is no finite number or out of its range.
 Material material_from(const Json& json, const std::string& place);
 
+/// The same for a pair of materials under "contacts".
+Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials);
+MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place);
+
+/// A finite number >= lowest, or Error that starts with where.
+double number_from(const Json& json, const std::string& where, double lowest);
+
 }  // namespace kiln::io

@@ -1,0 +1,134 @@
+// units.cpp: the table of units and the parser of quantities.
+#include "cli/units.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace kiln::cli {
+
+namespace {
+
+struct Unit {
+    Dimension dimension;
+    const char* name;
+    double factor;        // SI value of one unit
+    double offset = 0.0;  // SI value of zero units
+};
+
+constexpr double zero_celsius = 273.15;  // K, definition of the Celsius scale
+constexpr double litre = 1e-3;           // m3
+
+constexpr Unit units[] = {
+    {Dimension::length, "m", 1.0},
+    {Dimension::length, "cm", 1e-2},
+    {Dimension::length, "mm", 1e-3},
+    {Dimension::length, "um", 1e-6},
+    {Dimension::length, "nm", 1e-9},
+    {Dimension::area, "m2", 1.0},
+    {Dimension::area, "mm2", 1e-6},
+    {Dimension::volume, "m3", 1.0},
+    {Dimension::volume, "l", litre},
+    {Dimension::time, "s", 1.0},
+    {Dimension::time, "ms", 1e-3},
+    {Dimension::time, "min", 60.0},
+    {Dimension::time, "h", 3600.0},
+    {Dimension::temperature, "K", 1.0},
+    {Dimension::temperature, "C", 1.0, zero_celsius},
+    {Dimension::heating_rate, "K/s", 1.0},
+    {Dimension::heating_rate, "K/min", 1.0 / 60.0},
+    {Dimension::heating_rate, "K/h", 1.0 / 3600.0},
+    {Dimension::pressure, "Pa", 1.0},
+    {Dimension::pressure, "kPa", 1e3},
+    {Dimension::pressure, "MPa", 1e6},
+    {Dimension::pressure, "GPa", 1e9},
+    {Dimension::force, "N", 1.0},
+    {Dimension::force, "kN", 1e3},
+    {Dimension::force, "mN", 1e-3},
+    {Dimension::force, "uN", 1e-6},
+    {Dimension::force, "nN", 1e-9},
+    {Dimension::velocity, "m/s", 1.0},
+    {Dimension::velocity, "mm/s", 1e-3},
+    {Dimension::velocity, "um/s", 1e-6},
+    {Dimension::velocity, "nm/s", 1e-9},
+    {Dimension::surface_energy, "J/m2", 1.0},
+    {Dimension::surface_energy, "mJ/m2", 1e-3},
+    {Dimension::molar_energy, "J/mol", 1.0},
+    {Dimension::molar_energy, "kJ/mol", 1e3},
+    {Dimension::mass_density, "kg/m3", 1.0},
+    {Dimension::mass_density, "g/cm3", 1e3},
+    {Dimension::angle, "rad", 1.0},
+    {Dimension::angle, "deg", std::numbers::pi / 180.0},
+    {Dimension::diffusion_volume, "m3/s", 1.0},
+};
+
+}  // namespace
+
+std::string known_units(Dimension dimension) {
+    std::string list;
+    for (const Unit& unit : units)
+        if (unit.dimension == dimension) list += (list.empty() ? "" : ", ") + std::string(unit.name);
+    return list;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension) {
+    const std::string given = "'" + std::string(text) + "'";
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || !std::isfinite(number)) throw CLI::ValidationError(given + " is not a number");
+    std::string_view name = text.substr(static_cast<std::size_t>(end - text.data()));
+    while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
+    if (dimension == Dimension::none) {
+        if (!name.empty()) throw CLI::ValidationError(given + " has a unit where a plain number is wanted");
+        return number;
+    }
+    for (const Unit& unit : units)
+        if (unit.dimension == dimension && name == unit.name) {
+            const double value = number * unit.factor + unit.offset;
+            if (dimension == Dimension::temperature && value <= 0.0)
+                throw CLI::ValidationError(given + " is not above absolute zero");
+            return value;
+        }
+    const std::string problem = name.empty() ? " has no unit" : " has no unit of the right kind";
+    throw CLI::ValidationError(given + problem + "; known here: " + known_units(dimension));
+}
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& target, Dimension dimension, const std::string& help,
+                          const std::string& default_text) {
+    const std::string known = known_units(dimension);
+    CLI::Option* option = app.add_option_function<std::string>(
+        name,
+        [&target, dimension, name](const std::string& text) {
+            try {
+                target = parse_quantity(text, dimension);
+            } catch (const CLI::ValidationError& error) {
+                throw CLI::ValidationError(name + ": " + error.what());
+            }
+        },
+        help + (known.empty() ? "" : " [" + known + "]"));
+    option->type_name(known.empty() ? "NUMBER" : "QUANTITY");
+    if (!default_text.empty()) option->default_str(default_text);
+    return option;
+}
+
+CLI::Option* add_quantities(CLI::App& app, const std::string& name, std::vector<double>& target, Dimension dimension,
+                            const std::string& help) {
+    const std::string known = known_units(dimension);
+    CLI::Option* option = app.add_option_function<std::vector<std::string>>(
+        name,
+        [&target, dimension, name](const std::vector<std::string>& texts) {
+            target.clear();
+            for (const std::string& text : texts) {
+                try {
+                    target.push_back(parse_quantity(text, dimension));
+                } catch (const CLI::ValidationError& error) {
+                    throw CLI::ValidationError(name + ": " + error.what());
+                }
+            }
+        },
+        help + (known.empty() ? "" : " [" + known + "]"));
+    option->delimiter(',')->expected(1)->type_name(known.empty() ? "NUMBER,…" : "QUANTITY,…");
+    return option;
+}
+
+}  // namespace kiln::cli

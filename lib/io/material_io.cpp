@@ -1,0 +1,99 @@
+// material_io.cpp: materials and pairs of materials in a document's header.
+#include <cmath>
+
+#include "io/state_io.h"
+
+namespace kiln::io {
+
+namespace {
+
+/// Where a key of the format lives in the struct. Keys of grain_boundary_diffusion are written with a dot.
+struct Field {
+    const char* key;
+    std::optional<double> Material::*member;
+    double lowest;  // smallest value allowed
+};
+
+constexpr Field fields[] = {
+    {"density", &Material::density, 0.0},
+    {"surface_energy", &Material::surface_energy, 0.0},
+    {"atomic_volume", &Material::atomic_volume, 0.0},
+    {"diffusion_parameter", &Material::diffusion_parameter, 0.0},
+    {"dihedral_angle", &Material::dihedral_angle, 0.0},
+    {"young_modulus", &Material::young_modulus, 0.0},
+    {"poisson_ratio", &Material::poisson_ratio, -1.0},
+};
+
+constexpr const char* diffusion_key = "grain_boundary_diffusion";
+
+}  // namespace
+
+double number_from(const Json& json, const std::string& where, double lowest) {
+    if (!json.is_number() || !std::isfinite(json.get<double>())) throw Error(where + " is " + json.dump() + ", not a number");
+    if (json.get<double>() < lowest) throw Error(where + " is " + json.dump() + ", below " + Json(lowest).dump());
+    return json.get<double>();
+}
+
+Material material_from(const Json& json, const std::string& place) {
+    if (!json.is_object() || !json.contains("name") || !json["name"].is_string())
+        throw Error(place + ": a material is an object with a name");
+    Material material;
+    material.name = json["name"].get<std::string>();
+    const std::string where = place + ": material '" + material.name + "': ";
+    material.other = json;
+    material.other.erase("name");
+    for (const Field& field : fields) {
+        if (!json.contains(field.key)) continue;
+        material.*field.member = number_from(json[field.key], where + field.key, field.lowest);
+        material.other.erase(field.key);
+    }
+    if (json.contains(diffusion_key)) {
+        const Json& diffusion = json[diffusion_key];
+        if (!diffusion.is_object() || !diffusion.contains("prefactor") || !diffusion.contains("activation_energy"))
+            throw Error(where + diffusion_key + " needs prefactor and activation_energy");
+        material.diffusion_prefactor = number_from(diffusion["prefactor"], where + "prefactor", 0.0);
+        material.activation_energy = number_from(diffusion["activation_energy"], where + "activation_energy", 0.0);
+        material.other.erase(diffusion_key);
+    }
+    return material;
+}
+
+Json material_json(const Material& material) {
+    Json json{{"name", material.name}};
+    for (const Field& field : fields)
+        if (material.*field.member) json[field.key] = *(material.*field.member);
+    if (material.diffusion_prefactor && material.activation_energy)
+        json[diffusion_key] = {{"prefactor", *material.diffusion_prefactor}, {"activation_energy", *material.activation_energy}};
+    for (const auto& [key, value] : material.other.items()) json[key] = value;
+    return json;
+}
+
+MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place) {
+    if (!json.is_object() || !json.contains("materials") || !json["materials"].is_array() || json["materials"].size() != 2)
+        throw Error(place + ": a contact is an object with the names of two materials");
+    MaterialPair pair;
+    for (std::size_t side = 0; side < 2; ++side) {
+        const Json& name = json["materials"][side];
+        std::size_t row = 0;
+        while (row < materials.size() && name != materials[row].name) ++row;
+        if (row == materials.size()) throw Error(place + ": contacts name an unknown material " + name.dump());
+        pair.materials[side] = static_cast<std::int32_t>(row);
+    }
+    const std::string where = place + ": contact of " + json["materials"].dump() + ": ";
+    const auto read = [&](const char* key, std::optional<double>& target) {
+        if (json.contains(key)) target = number_from(json[key], where + key, 0.0);
+    };
+    read("surface_energy", pair.surface_energy);
+    read("diffusion_parameter", pair.diffusion_parameter);
+    return pair;
+}
+
+Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials) {
+    Json json{{"materials",
+               {materials[static_cast<std::size_t>(pair.materials[0])].name, materials[static_cast<std::size_t>(pair.materials[1])].name}}};
+    if (pair.surface_energy) json["surface_energy"] = *pair.surface_energy;
+    if (pair.diffusion_parameter) json["diffusion_parameter"] = *pair.diffusion_parameter;
+    return json;
+}
+
+}  // namespace kiln::io

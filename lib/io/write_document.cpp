@@ -1,0 +1,96 @@
+// write_document.cpp: writing one document, as text or with 64-byte aligned binary arrays.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "io/array_types.h"
+#include "io/document.h"
+#include "io/files.h"
+
+namespace kiln::io {
+
+namespace {
+
+constexpr std::size_t alignment = 64;  // bytes
+
+std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
+
+void put(std::FILE* file, const std::string& name, const void* data, std::size_t bytes) {
+    if (std::fwrite(data, 1, bytes, file) == bytes) return;
+    if (errno == EPIPE) throw ClosedPipe();
+    throw Error(name + ": cannot be written: " + std::strerror(errno));
+}
+
+void check_finite(const Json& json, const std::string& path) {
+    if (json.is_number_float() && !std::isfinite(json.get<double>())) throw Error(path + " is not a finite number");
+    if (json.is_structured())
+        for (const auto& [key, value] : json.items()) check_finite(value, path.empty() ? key : path + "." + key);
+}
+
+Json array_head(const Array& array) { return {{"type", type_name(array)}, {"shape", array.shape}}; }
+
+Json text_array(const Array& array, const std::string& where) {
+    Json spec = array_head(array);
+    spec["data"] = std::visit(
+        [&](const auto& values) {
+            using Value = typename std::decay_t<decltype(values)>::value_type;
+            Json data = Json::array();
+            for (std::size_t index = 0; index < values.size(); ++index) {
+                if constexpr (std::is_floating_point_v<Value>)
+                    if (!std::isfinite(values[index]))
+                        throw Error(where + ": value " + std::to_string(index) + " is not finite and text cannot hold it");
+                data.push_back(values[index]);
+            }
+            return data;
+        },
+        array.data);
+    return spec;
+}
+
+struct Payload {
+    const void* data;
+    std::size_t bytes;
+};
+
+Payload payload_of(const Array& array) {
+    return std::visit([](const auto& values) { return Payload{values.data(), values.size() * sizeof(values[0])}; }, array.data);
+}
+
+}  // namespace
+
+void write_document(std::FILE* file, const std::string& name, const Document& document, bool text) {
+    check_finite(document.header, "");
+    Json header = document.header;
+    std::vector<Payload> payloads;
+    std::size_t bytes = 0;
+    const auto add_group = [&](const char* group, const std::vector<NamedArray>& arrays) {
+        Json& specs = header[group] = Json::object();
+        for (const NamedArray& named : arrays) {
+            if (text) {
+                specs[named.name] = text_array(named.array, std::string(group) + "." + named.name);
+                continue;
+            }
+            specs[named.name] = array_head(named.array);
+            specs[named.name]["at"] = bytes;
+            payloads.push_back(payload_of(named.array));
+            bytes += aligned(payloads.back().bytes);
+        }
+    };
+    if (!document.particles.empty()) add_group("particles", document.particles);
+    if (document.has_bonds) add_group("bonds", document.bonds);
+    if (bytes > 0) header["bytes"] = bytes;
+
+    std::string line = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (bytes > 0) line.append(aligned(line.size() + 1) - line.size() - 1, ' ');
+    line += '\n';
+    put(file, name, line.data(), line.size());
+    constexpr std::array<char, alignment> zeros{};
+    for (const Payload& payload : payloads) {
+        put(file, name, payload.data, payload.bytes);
+        put(file, name, zeros.data(), aligned(payload.bytes) - payload.bytes);
+    }
+}
+
+}  // namespace kiln::io
