@@ -25,6 +25,7 @@ LDFLAGS  := -fopenmp $(EXTRA)
 TOOLS        := sinter bondify bend analyze
 LIB_SOURCES  := $(wildcard lib/*/*.cpp)
 LIB_OBJECTS  := $(LIB_SOURCES:%.cpp=$(BUILD)/%.o)
+TOOL_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(filter-out %/main.cpp,$(wildcard tools/*/*.cpp)))
 UNIT_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tests/unit/*.cpp tests/physics/*.cpp))
 BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
 PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
@@ -58,7 +59,7 @@ $(BUILD)/bin/$(1): $$(patsubst %.cpp,$(BUILD)/%.o,$$(wildcard tools/$(1)/*.cpp))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call tool_rule,$(tool))))
 
-$(BUILD)/test/unit: $(UNIT_OBJECTS) $(BUILD)/libkiln.a
+$(BUILD)/test/unit: $(UNIT_OBJECTS) $(TOOL_OBJECTS) $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
@@ -66,6 +67,7 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
+-include demo.mk tests/fuzz/fuzz.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 clean:                          ## delete everything that was built

@@ -1,0 +1,48 @@
+// sinter_contact.h: the law of a sintering contact. To change the law, change this file.
+//
+// Parhami & McMeeking 1998 and Bouvard & McMeeking 1996, as Eq. 1 of Dosta et al. 2017 states it for equal spheres, with R -> 2 R*
+// for unequal ones. h overlap, m; R* = r1 r2/(r1 + r2), m; Delta diffusion parameter, m5/(N s); gamma surface energy, J/m2.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace kiln::physics {
+
+/// Dimensionless constants of the contact.
+struct ContactConstants {
+    double alpha = 4.5;  // sintering force; Bouvard & McMeeking 1996: 9/2 for grain boundary to surface diffusion ratio 2
+    double beta = 4.0;   // viscosities; the same source
+    double eta = 0.01;   // tangential viscous friction
+};
+
+/// Reduced radius R* = r1 r2/(r1 + r2), m.
+inline double reduced_radius(double first, double second) { return first * second / (first + second); }
+
+/// Square of the contact radius, a^2 = 4 R* h (Coble; 2 R h for equal spheres), m2. Zero without overlap.
+inline double contact_radius_squared(double overlap, double reduced) { return overlap > 0.0 ? 4.0 * reduced * overlap : 0.0; }
+
+/// Attraction by surface energy, (alpha/beta) pi 2 R* gamma, N (second term of Eq. 1).
+inline double sintering_force(const ContactConstants& c, double reduced, double surface_energy) {
+    return c.alpha / c.beta * std::numbers::pi * 2.0 * reduced * surface_energy;
+}
+
+/// Normal viscosity times Delta over h^2: pi a^4/(2 beta) = K h^2 with K = pi (4 R*)^2/(2 beta), m2 (first term of Eq. 1).
+inline double normal_viscosity_factor(const ContactConstants& c, double reduced) {
+    return std::numbers::pi * 16.0 * reduced * reduced / (2.0 * c.beta);
+}
+
+/// Tangential viscosity times Delta, eta pi a^2 (2 R*)^2/(2 beta), m4.
+inline double tangential_viscosity(const ContactConstants& c, double overlap, double reduced) {
+    return c.eta * std::numbers::pi * contact_radius_squared(overlap, reduced) * 4.0 * reduced * reduced / (2.0 * c.beta);
+}
+
+/// Overlap of an isolated pair after integral(Delta dt) = diffusion (m5/N) under the closing force (N): the exact solution
+/// h^3 = h0^3 + 3 force diffusion/K of Eq. 1, m. Never below zero.
+inline double pair_overlap(double overlap, double force, double diffusion, double viscosity_factor) {
+    const double start = overlap > 0.0 ? overlap : 0.0;
+    const double cube = start * start * start + 3.0 * force * diffusion / viscosity_factor;
+    return cube > 0.0 ? std::cbrt(cube) : 0.0;
+}
+
+}  // namespace kiln::physics
