@@ -1,0 +1,21 @@
+// bending.h: Young's modulus from a three-point bending test of a rectangular bar.
+//
+// Deflection under the load, Timoshenko beam with shear coefficient 5/6: F L^3/(48 E I) + F L/(4 (5/6) G A) with I = b h^3/12,
+// A = b h, G = E/(2 (1 + nu)). Source: S. P. Timoshenko, Strength of Materials, part I, effect of shear on deflection.
+#pragma once
+
+namespace kiln::physics {
+
+/// Factor by which shear softens the bar: 1 + 2.4 (1 + nu) (h/L)^2; height h and span L in m.
+inline double shear_correction(double height, double span, double poisson_ratio) {
+    const double slenderness = height / span;
+    return 1.0 + 2.4 * (1.0 + poisson_ratio) * slenderness * slenderness;
+}
+
+/// Young's modulus, Pa, shear included: E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].
+/// slope S: force over deflection under the load, N/m; span L, width b, height h in m.
+inline double bending_modulus(double slope, double span, double width, double height, double poisson_ratio) {
+    return slope * span * span * span / (4.0 * width * height * height * height) * shear_correction(height, span, poisson_ratio);
+}
+
+}  // namespace kiln::physics
