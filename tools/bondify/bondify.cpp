@@ -1,0 +1,134 @@
+// bondify.cpp: overlaps are found, particles shrink, bonds get their radii and lengths.
+#include "tools/bondify/bondify.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "core/neighbours.h"
+
+namespace kiln::bondify {
+
+namespace {
+
+/// Room to shrink: twice what the smallest radii would fill.
+constexpr double closest_share = 2.0 * smallest_share;
+
+std::vector<Overlap> overlaps_of(const State& state, const std::vector<Pair>& pairs) {
+    const Particles& particles = state.particles;
+    std::vector<Overlap> overlaps;
+    overlaps.reserve(pairs.size());
+    for (const Pair& pair : pairs) {
+        const auto i = static_cast<std::size_t>(pair.i);
+        const auto j = static_cast<std::size_t>(pair.j);
+        const double distance = pair_vector(state.box, particles.position, pair).norm();
+        if (distance < closest_share * (particles.radius[i] + particles.radius[j])) {
+            std::ostringstream words;
+            words << "particles " << particles.id[i] << " and " << particles.id[j] << ": their centres are " << distance
+                  << " m apart, too close for a bond between spheres of radius " << particles.radius[i] << " m and "
+                  << particles.radius[j] << " m";
+            throw Error(words.str());
+        }
+        overlaps.push_back({pair.i, pair.j, distance});
+    }
+    return overlaps;
+}
+
+/// Solid volume, m3, summed in long double: the error that is reported is not to be that of the sum.
+long double solid_volume(std::span<const double> radius, std::span<const double> bond_volume) {
+    constexpr long double pi = 3.14159265358979323846264338327950288L;
+    long double cubes = 0.0L;
+    long double bonds = 0.0L;
+    for (const long double r : radius) cubes += r * r * r;
+    for (const double volume : bond_volume) bonds += volume;
+    return 4.0L / 3.0L * pi * cubes + bonds;
+}
+
+/// The bonds, thin ones included, with what there is to count about them.
+Bonds make_bonds(const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const Shrunk& shrunk, const Options& options,
+                 Summary& summary) {
+    Bonds bonds;
+    bonds.volume = shrunk.volume;
+    for (std::size_t bond = 0; bond < overlaps.size(); ++bond) {
+        const auto [first, second, distance] = overlaps[bond];
+        const double radius1 = shrunk.radius[static_cast<std::size_t>(first)];
+        const double radius2 = shrunk.radius[static_cast<std::size_t>(second)];
+        const double radius = physics::bond_radius(shrunk.volume[bond], distance, radius1, radius2, options.volume);
+        bonds.pair.push_back({first, second});
+        bonds.image.push_back(pairs[bond].image);
+        bonds.radius.push_back(radius);
+        bonds.length.push_back(physics::bond_length(distance, radius1, radius2, radius));
+
+        if (radius < std::min(radius1, radius2)) continue;
+        ++summary.clamped;
+        summary.lost_volume += shrunk.volume[bond] - physics::bond_volume(distance, radius1, radius2, radius, options.volume);
+    }
+    return bonds;
+}
+
+/// Counts the thin bonds and leaves them out if the options say so.
+void treat_thin(Bonds& bonds, std::span<const double> radius, const Options& options, Summary& summary) {
+    std::vector<std::int32_t> thick;
+    for (std::size_t bond = 0; bond < bonds.size(); ++bond) {
+        const auto [first, second] = bonds.pair[bond];
+        const double smaller = std::min(radius[static_cast<std::size_t>(first)], radius[static_cast<std::size_t>(second)]);
+        if (bonds.radius[bond] >= options.thin_ratio * smaller) {
+            thick.push_back(static_cast<std::int32_t>(bond));
+            continue;
+        }
+        ++summary.thin;
+        if (options.drop_thin) summary.dropped_volume += bonds.volume[bond];
+    }
+    if (options.drop_thin && summary.thin > 0) bonds = take_rows(bonds, thick);
+}
+
+double mean(std::span<const double> values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+Json Summary::json(const Options& options) const {
+    return {{"method", options.method == Method::exact ? "exact" : "sweep"},
+            {"sharing", options.sharing == Sharing::pair ? "pair" : "particle"},
+            {"volume", options.volume == physics::BondVolume::cylinder ? "cylinder" : "cap-corrected"},
+            {"pairs", pairs},
+            {"bonds", bonds},
+            {"mean_diameter", mean_diameter},
+            {"mean_length", mean_length},
+            {"coordination_number", coordination_number},
+            {"clamped", clamped},
+            {"lost_volume", lost_volume},
+            {"thin", thin},
+            {"dropped_volume", dropped_volume},
+            {"stopped", stopped},
+            {"volume_error", volume_error}};
+}
+
+Summary bondify(State& state, const Options& options, const Watch& watch) {
+    Particles& particles = state.particles;
+    const std::vector<Pair> pairs = find_pairs(state.box, particles.position, particles.radius);
+    const std::vector<Overlap> overlaps = overlaps_of(state, pairs);
+    Shrunk shrunk = options.method == Method::exact
+                        ? shrink_exactly(particles.radius, overlaps, options.sharing)
+                        : shrink_by_sweeps(particles.radius, overlaps, options.sharing, options.decrement, watch);
+    Summary summary{.pairs = pairs.size(), .stopped = shrunk.stopped, .finished = shrunk.finished};
+    if (!summary.finished) return summary;
+
+    const long double before = solid_volume(particles.radius, {});
+    const long double after = solid_volume(shrunk.radius, shrunk.volume);
+    summary.volume_error = static_cast<double>(after / before - 1.0L);
+
+    Bonds bonds = make_bonds(pairs, overlaps, shrunk, options, summary);
+    treat_thin(bonds, shrunk.radius, options, summary);
+    summary.bonds = bonds.size();
+    summary.mean_diameter = 2.0 * mean(bonds.radius);
+    summary.mean_length = mean(bonds.length);
+    summary.coordination_number = 2.0 * static_cast<double>(bonds.size()) / static_cast<double>(particles.size());
+    particles.radius = std::move(shrunk.radius);
+    state.bonds = std::move(bonds);
+    return summary;
+}
+
+}  // namespace kiln::bondify

@@ -1,0 +1,33 @@
+// bondify.h: a state of overlapping particles becomes a state of bonded particles.
+#pragma once
+
+#include <cstdint>
+
+#include "tools/bondify/options.h"
+#include "core/state.h"
+
+namespace kiln::bondify {
+
+/// What a state's history says about its transition.
+struct Summary {
+    std::size_t pairs = 0;           // that overlapped
+    std::size_t bonds = 0;           // that were made of them
+    double mean_diameter = 0.0;      // m
+    double mean_length = 0.0;        // m
+    double coordination_number = 0;  // bond ends per particle
+    std::size_t clamped = 0;         // bonds as thick as the smaller particle, with volume left over
+    double lost_volume = 0.0;        // m3, left over in those
+    std::size_t thin = 0;            // bonds below the thin ratio, kept or not
+    double dropped_volume = 0.0;     // m3, of thin bonds left out
+    std::size_t stopped = 0;         // particles that came down to smallest_share of their radius
+    double volume_error = 0.0;       // solid volume after, dropped bonds included, over before, minus one
+    bool finished = true;            // false: the watch asked to stop; the state is untouched
+
+    Json json(const Options& options) const;
+};
+
+/// Shrinks the particles of the state and fills its bonds in the order of find_pairs, replacing those it had.
+/// Throws Error naming both ids where centres lie closer than 2 % of the sum of the radii.
+Summary bondify(State& state, const Options& options, const Watch& watch);
+
+}  // namespace kiln::bondify

@@ -1,0 +1,66 @@
+// main.cpp: bondify, overlapping particles to bonded particles, state by state.
+#include <sstream>
+
+#include "tools/bondify/bondify.h"
+#include "cli/progress.h"
+#include "cli/tool.h"
+#include "io/files.h"
+
+namespace {
+
+using namespace kiln;
+
+/// One sentence for each thing about a state that the user should know.
+void report(const bondify::Summary& summary, const bondify::Options& options, std::size_t number) {
+    const auto warn = [number](const auto&... words) {
+        std::ostringstream sentence;
+        sentence << "state " << number << ": ";
+        (sentence << ... << words);
+        cli::warn("bondify", sentence.str());
+    };
+    if (summary.pairs == 0) warn("no particles overlap, so there are no bonds");
+    if (summary.clamped > 0)
+        warn(summary.clamped, " of ", summary.pairs, " bonds are clamped to the radius of their smaller particle; a volume of ",
+             summary.lost_volume, " m3 finds no room in them");
+    if (summary.stopped > 0)
+        warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bondify::smallest_share, " % of their radius");
+    if (options.drop_thin && summary.thin > 0)
+        warn(summary.thin, " thin bonds are left out, and ", summary.dropped_volume, " m3 of solid with them");
+}
+
+int run(int argc, char** argv) {
+    cli::Common common;
+    bondify::Options options;
+    CLI::App app{"", "bondify"};
+    options.add_to(app);
+    common.add_to(app);
+    cli::parse(app, argc, argv, common);
+
+    io::Input input(common.files);
+    io::Output output(common.output, common.text);
+    cli::Progress progress("bondify", common);
+    std::size_t number = 0;
+    while (auto state = input.next_state()) {
+        ++number;
+        if (state->bonds && !common.quiet)
+            cli::warn("bondify", "state " + std::to_string(number) + ": the bonds that it had are replaced");
+        const bondify::Watch watch = [&](double done) {
+            progress.show(done, "state " + std::to_string(number));
+            return !cli::stop_requested();
+        };
+        const bondify::Summary summary = bondify::bondify(*state, options, watch);
+        if (!summary.finished) return cli::interrupted;
+        progress.clear();
+        if (!common.quiet) report(summary, options, number);
+        const Json json = summary.json(options);
+        progress.detail(json);
+        state->history.push_back(cli::history_entry("bondify", app, json));
+        output.write(std::move(*state));
+    }
+    output.commit();
+    return cli::done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return kiln::cli::run("bondify", argc, argv, run); }
