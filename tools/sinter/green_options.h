@@ -1,0 +1,23 @@
+// green_options.h: the options of `sinter green`.
+#pragma once
+
+#include "cli/tool.h"
+#include "tools/sinter/green_packing.h"
+
+namespace kiln::sinter {
+
+struct GreenOptions {
+    cli::Common common;
+    PackingOptions packing;
+    double diameter = 100e-9;  // m, of monosize particles
+    std::string distribution = "monosize";
+    std::string material = "alumina";
+
+    void add_to(CLI::App& app);
+
+    /// Checks the options against each other and reads the size distribution, after parsing.
+    /// Throws CLI::ValidationError, or Error where the list of diameters cannot be read.
+    void complete(const CLI::App& app);
+};
+
+}  // namespace kiln::sinter
