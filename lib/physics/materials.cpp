@@ -3,12 +3,14 @@
 
 #include <numbers>
 
+#include "physics/diffusion.h"
+
 namespace kiln::physics {
 
 namespace {
 
 /// Dosta et al. 2017, Table 1 (density, surface energy, atomic volume) and section 5 (elastic constants); grain boundary diffusion of
-/// alumina as used with this contact model by Besler et al. 2016.
+/// alumina as used with this contact model by Besler et al., refs. 5 and 6 there.
 Material alumina() {
     Material material;
     material.name = "alumina";
@@ -47,6 +49,14 @@ Material builtin_material(const std::string& name) {
 double required(const std::optional<double>& value, const Material& material, const std::string& key) {
     if (!value) throw Error("material '" + material.name + "' has no " + key);
     return *value;
+}
+
+double diffusion_parameter_of(const Material& material, double temperature) {
+    if (material.diffusion_parameter) return *material.diffusion_parameter;
+    return diffusion_parameter(required(material.atomic_volume, material, "atomic_volume"),
+                               required(material.diffusion_prefactor, material, "grain_boundary_diffusion.prefactor"),
+                               required(material.activation_energy, material, "grain_boundary_diffusion.activation_energy"),
+                               temperature);
 }
 
 }  // namespace kiln::physics

@@ -17,4 +17,8 @@ std::vector<std::string> builtin_names();
 /// A material's value, or Error "material 'X' has no KEY".
 double required(const std::optional<double>& value, const Material& material, const std::string& key);
 
+/// Delta of a material at a temperature (K), m5/(N s): its constant diffusion_parameter, or by grain boundary diffusion.
+/// Throws Error that names the missing key.
+double diffusion_parameter_of(const Material& material, double temperature);
+
 }  // namespace kiln::physics

@@ -1,0 +1,39 @@
+// conjugate_gradients.h: preconditioned conjugate gradients for the stiffness of a contact network with the box's strains.
+#pragma once
+
+#include "numerics/contact_network.h"
+#include "numerics/preconditioner.h"
+
+namespace kiln::numerics {
+
+struct LinearSolve {
+    int iterations = 0;
+    double residual = 0.0;  // norm of the preconditioned residual over that of the right-hand side
+};
+
+/// Solves K x = b from x = 0 until the residual's norm in the preconditioner falls below `tolerance` times that of b.
+///
+/// A singular K (particles without contacts, clusters that hang on nothing) is allowed as long as b does no work on its null space.
+/// free_axis: axes along which the box may strain. Work vectors are kept between calls.
+class ConjugateGradients {
+   public:
+    explicit ConjugateGradients(std::size_t particles);
+
+    LinearSolve solve(const ContactNetwork& network, const Preconditioner& preconditioner, const std::array<bool, 3>& free_axis,
+                      const Motion& b, Motion& x, double tolerance, int most_iterations);
+
+   private:
+    Motion r_, z_, p_, q_;
+    std::vector<double> total_;
+};
+
+/// Sum of the products of all components, particle by particle in chunks, strains last.
+double dot(const ContactNetwork& network, const Motion& a, const Motion& b);
+
+/// y += factor * x.
+void add(const ContactNetwork& network, double factor, const Motion& x, Motion& y);
+
+/// Sets the strains of fixed axes to zero.
+void mask(Motion& motion, const std::array<bool, 3>& free_axis);
+
+}  // namespace kiln::numerics

@@ -1,0 +1,202 @@
+// sinter_step.cpp: Newton with a line search on the step's convex function, first at the start geometry, then at the midpoint.
+#include "numerics/sinter_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr int most_newton = 60;
+constexpr int most_conjugate_gradients = 5000;
+constexpr double overshoot = 0.5;          // slope left at the end of a Newton step, relative to its start, that asks for a line search
+constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
+constexpr double tightest_linear = 1e-3;
+
+/// Share of the step in which a pair touches, by linear change of the overlap.
+double touching_share(double start, double end) {
+    if (start >= 0.0 && end >= 0.0) return 1.0;
+    if (start < 0.0 && end < 0.0) return 0.0;
+    return std::max(start, end) / std::abs(end - start);
+}
+
+/// Representative of a particle's cluster, with path halving.
+std::int32_t root(std::vector<std::int32_t>& parent, std::int32_t row) {
+    auto at = [&](std::int32_t index) -> std::int32_t& { return parent[static_cast<std::size_t>(index)]; };
+    while (at(row) != row) row = at(row) = at(at(row));
+    return row;
+}
+
+}  // namespace
+
+SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings)
+    : box_(box),
+      pairs_(pairs),
+      settings_(settings),
+      network_(box, position, pairs),
+      solver_(position.size()),
+      normals_(pairs.size()),
+      vectors_(pairs.size()),
+      share_(pairs.size()),
+      tangential_(pairs.size()),
+      total_(3 * position.size()),
+      unbalanced_(position.size()),
+      direction_(position.size()) {}
+
+Vec3 SinterStep::relative(std::size_t row, const Motion& motion, const Vec3& vector) const {
+    const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].i)]);
+    const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].j)]);
+    return b - a + motion.strain.cwiseProduct(vector);
+}
+
+void SinterStep::start_geometry(const std::vector<PairStep>& step) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < step.size(); ++row) {
+        const PairStep& pair = step[row];
+        vectors_[row] = pair.vector;
+        normals_[row] = pair.vector / pair.distance;
+        share_[row] = pair.overlap >= 0.0 ? 1.0 : 0.0;
+        tangential_[row] = pair.diffusion > 0.0
+                               ? physics::tangential_viscosity(settings_.constants, pair.overlap, pair.reduced_radius) / pair.diffusion
+                               : 0.0;
+    }
+}
+
+void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < step.size(); ++row) {
+        const PairStep& pair = step[row];
+        const Vec3 end = pair.vector + relative(row, motion, pair.vector);
+        const double end_overlap = pair.overlap + pair.distance - end.norm();
+        normals_[row] = (pair.vector + end).normalized();
+        share_[row] = touching_share(pair.overlap, end_overlap);
+        const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0)) * share_[row];
+        tangential_[row] = pair.diffusion > 0.0
+                               ? physics::tangential_viscosity(settings_.constants, mean_overlap, pair.reduced_radius) / pair.diffusion
+                               : 0.0;
+    }
+}
+
+void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool pair_exact) {
+    ContactNetwork& network = network_;
+    network.for_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network.chunks()[index];
+        for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
+            const auto row = static_cast<std::size_t>(network.pair[entry]);
+            network.nx[entry] = normals_[row][0];
+            network.ny[entry] = normals_[row][1];
+            network.nz[entry] = normals_[row][2];
+            network.tangential[entry] = tangential_[row];
+        }
+    });
+    network.gather(motion, unbalanced, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
+        const auto row = static_cast<std::size_t>(network.pair[entry]);
+        const PairStep& pair = step[row];
+        const Vec3& n = normals_[row];
+        const double along = n.dot(du);  // opening
+        double reached = std::max(0.0, pair.overlap - along);
+        const double force = share_[row] * pair.force;
+        if (pair_exact) {  // tangent where the pair alone would end, so that contacts without overlap have a stiffness
+            const double start = std::max(0.0, pair.overlap);
+            reached = std::cbrt(start * start * start + 3.0 * force / pair.cubic);
+            const double stiffness = pair.cubic * reached * reached;
+            network.normal[entry] = stiffness;
+            return (stiffness * (along + reached - start)) * n + tangential_[row] * (du - along * n);
+        }
+        const double start = std::max(0.0, pair.overlap);
+        const double resistance = pair.cubic / 3.0 * (reached * reached * reached - start * start * start);
+        network.normal[entry] = pair.cubic * reached * reached;
+        return (force - resistance) * n + tangential_[row] * (du - along * n);
+    });
+    for (int axis = 0; axis < 3; ++axis) unbalanced.strain[axis] += settings_.pressure[axis] * box_.volume();
+    mask(unbalanced, settings_.free_axis);
+    work_ = network.sum_chunks([&](std::size_t index) {
+        double sum = 0.0;
+        network.for_owned(index, [&](std::size_t entry) {
+            const auto row = static_cast<std::size_t>(network.pair[entry]);
+            sum -= share_[row] * step[row].force * normals_[row].dot(relative(row, motion, vectors_[row]));
+        });
+        return sum;
+    }) - settings_.pressure.dot(motion.strain) * box_.volume();
+}
+
+bool SinterStep::newton(const std::vector<PairStep>& step, bool guessed, Motion& motion, StepReport& report) {
+    forces(step, motion, unbalanced_, !guessed);
+    double linear_tolerance = guessed ? 0.01 : loosest_linear;
+    bool exact_start = !guessed;
+    for (int iteration = 0; iteration < most_newton; ++iteration) {
+        preconditioner_.factorise(network_, vectors_);
+        unbalanced_.strain *= -1.0;
+        for (double& component : unbalanced_.displacement) component = -component;
+        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.free_axis, unbalanced_, direction_, linear_tolerance,
+                                                 most_conjugate_gradients);
+        ++report.newton;
+        report.conjugate_gradients += linear.iterations;
+        const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction
+        if (!(slope > 0.0)) return true;
+        add(network_, 1.0, direction_, motion);
+        forces(step, motion, unbalanced_, false);
+        if (exact_start) {
+            exact_start = false;
+            continue;
+        }
+        double length = 1.0, low = 0.0;
+        double left = dot(network_, unbalanced_, direction_);
+        double low_slope = -slope;
+        for (int search = 0; left > overshoot * slope && search < 30; ++search) {  // the convex function has a minimum before this
+            const double high = length;
+            double next = low + (high - low) * (-low_slope) / (left - low_slope);
+            next = std::clamp(next, low + 0.1 * (high - low), high - 0.1 * (high - low));
+            add(network_, next - length, direction_, motion);
+            length = next;
+            forces(step, motion, unbalanced_, false);
+            left = dot(network_, unbalanced_, direction_);
+        }
+        const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
+        const double now = length < 1.0 ? error : (linear.residual + error) * error;
+        if (now < settings_.solver_tolerance) return true;
+        linear_tolerance = std::clamp(0.3 * settings_.solver_tolerance / error, tightest_linear, loosest_linear);
+    }
+    return false;
+}
+
+void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion) const {
+    const std::size_t count = network_.particles();
+    std::vector<std::int32_t> parent(count);
+    std::iota(parent.begin(), parent.end(), 0);
+    for (std::size_t row = 0; row < pairs_.size(); ++row) {
+        if (share_[row] <= 0.0 && step[row].overlap <= 0.0) continue;
+        const std::int32_t a = root(parent, pairs_[row].i), b = root(parent, pairs_[row].j);
+        parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    std::vector<Vec3> drift(count, Vec3::Zero());
+    std::vector<double> members(count, 0.0);
+    for (std::size_t row = 0; row < count; ++row) {
+        const auto cluster = static_cast<std::size_t>(root(parent, static_cast<std::int32_t>(row)));
+        drift[cluster] += Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
+        members[cluster] += 1.0;
+    }
+    for (std::size_t row = 0; row < count; ++row) {
+        const auto cluster = static_cast<std::size_t>(root(parent, static_cast<std::int32_t>(row)));
+        Eigen::Map<Vec3>(&motion.displacement[3 * row]) -= drift[cluster] / members[cluster];
+    }
+}
+
+StepReport SinterStep::solve(const std::vector<PairStep>& step, const Motion* guess, Motion& motion, Motion* first_order) {
+    StepReport report;
+    motion = guess ? *guess : Motion(network_.particles());
+    mask(motion, settings_.free_axis);
+    start_geometry(step);
+    report.converged = newton(step, guess != nullptr, motion, report);
+    remove_drift(step, motion);
+    if (first_order) *first_order = motion;
+    if (!settings_.second_order) return report;
+    midpoint_geometry(step, motion);
+    report.converged = newton(step, true, motion, report) && report.converged;
+    remove_drift(step, motion);
+    return report;
+}
+
+}  // namespace kiln::numerics

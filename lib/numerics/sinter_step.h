@@ -1,0 +1,78 @@
+// sinter_step.h: one implicit step of overdamped sintering, the minimum of a convex function of the step's motion.
+//
+// Balance of all contact forces at the end of the step makes the sum over contacts
+//     D(w) + kt/2 |u_t|^2 - f w,   D'(w) = K/(3 I) [(h + w)+^3 - h+^3]
+// stationary, where w is the closing along the contact normal, u_t the tangential motion, h the overlap at the start, K h^2/Delta the
+// normal viscosity, I the integral of Delta over the step, kt the tangential viscosity over I and f the sintering force. The cube is
+// the exact integral of the viscosity over the overlap: an isolated pair is exact for a step of any length.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "numerics/conjugate_gradients.h"
+#include "numerics/contact_network.h"
+#include "physics/sinter_contact.h"
+
+namespace kiln::numerics {
+
+/// What one pair brings into a step. Geometry is that at the start of the step.
+struct PairStep {
+    std::size_t row;         // in the list of pairs it was made from
+    Vec3 vector;             // l, from i to j, m
+    double distance;         // |l|, m
+    double overlap;          // h, m; negative for a gap
+    double reduced_radius;   // R*, m
+    double force;            // f, N
+    double cubic;            // K/I, N/m3
+    double diffusion;        // I, m5/N
+};
+
+struct StepSettings {
+    physics::ContactConstants constants;
+    std::array<bool, 3> free_axis{true, true, true};  // may the box strain along this axis
+    Vec3 pressure = Vec3::Zero();                     // Pa, compressive, along the free axes
+    double solver_tolerance = 1e-4;                   // relative error of a step's motion in the energy norm
+    bool second_order = true;
+};
+
+struct StepReport {
+    int newton = 0;
+    int conjugate_gradients = 0;
+    bool converged = true;
+};
+
+/// Solves steps on one list of pairs. Positions and box must stay those of the constructor.
+class SinterStep {
+   public:
+    SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings);
+
+    /// Motion over the step of the given pair data (a row a pair). guess: motion to start from, or nothing.
+    /// first_order: if given, receives the motion of the first-order solution.
+    StepReport solve(const std::vector<PairStep>& step, const Motion* guess, Motion& motion, Motion* first_order);
+
+    /// Relative motion of pair `row` under a motion, m.
+    Vec3 relative(std::size_t row, const Motion& motion, const Vec3& vector) const;
+
+   private:
+    void start_geometry(const std::vector<PairStep>& step);
+    void midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion);
+    bool newton(const std::vector<PairStep>& step, bool guessed, Motion& motion, StepReport& report);
+    void forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool pair_exact);
+    void remove_drift(const std::vector<PairStep>& step, Motion& motion) const;
+
+    Box box_;
+    std::span<const Pair> pairs_;
+    StepSettings settings_;
+    ContactNetwork network_;
+    ConjugateGradients solver_;
+    Preconditioner preconditioner_;
+    std::vector<Vec3> normals_, vectors_;  // a row a pair
+    std::vector<double> share_, tangential_;
+    std::vector<double> total_;
+    Motion unbalanced_, direction_;
+    double work_ = 0.0;  // of the driving forces in the last call of forces(), J
+};
+
+}  // namespace kiln::numerics

@@ -1,0 +1,268 @@
+// sintering.cpp: the loop around the implicit step.
+#include "numerics/sintering.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/spatial_order.h"
+#include "physics/diffusion.h"
+#include "physics/materials.h"
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr double list_margin = 0.06;           // of a radius, that the list of pairs reaches beyond touch
+constexpr double largest_log_step = 0.05;      // of the density
+constexpr double first_closing = 2e-3;         // of the radius, in the first step, by the pair law
+constexpr double third_order_factor = 3.0;     // error of the second-order step over (difference of the orders times log step)
+constexpr double typical_log_range = 0.4;      // of a whole run, over which the tolerance is spread
+constexpr double coincident = 1e-9;            // of the radii, distance of centres that has no direction
+constexpr std::size_t most_idle_steps = 100;
+constexpr double idle = 1e-10;                 // log density change of an idle step
+
+constexpr int most_landings = 40;    // attempts to end a step at a wanted density
+constexpr int most_rejections = 20;  // of one step
+
+}  // namespace
+
+Sintering::Sintering(State state, const SinteringSettings& settings) : state_(std::move(state)), settings_(settings) {
+    Particles& particles = state_.particles;
+    if (particles.size() == 0) throw Error("the state has no particles");
+    largest_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());
+    order_ = spatial_order(state_.box, particles.position, 2.0 * largest_radius_);
+    particles = take_rows(particles, order_);
+    for (Vec3& position : particles.position) position = state_.box.wrap(position);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!state_.box.periodic[axis]) settings_.step.free_axis[axis] = false;
+
+    std::vector<double> diffusion, energy;
+    for (const Material& material : state_.materials) {
+        diffusion.push_back(physics::diffusion_parameter_of(material, settings_.temperature));
+        energy.push_back(physics::required(material.surface_energy, material, "surface_energy"));
+    }
+    for (std::size_t a = 0; a < diffusion.size(); ++a)
+        for (std::size_t b = 0; b < diffusion.size(); ++b) {
+            diffusion_.push_back(physics::mixed_diffusion_parameter(diffusion[a], diffusion[b]));
+            energy_.push_back(physics::mixed_surface_energy(energy[a], energy[b]));
+        }
+    for (const MaterialPair& pair : state_.contacts)
+        for (const auto& [a, b] : {std::pair(pair.materials[0], pair.materials[1]), std::pair(pair.materials[1], pair.materials[0])}) {
+            const std::size_t row = static_cast<std::size_t>(a) * diffusion.size() + static_cast<std::size_t>(b);
+            if (pair.diffusion_parameter) diffusion_[row] = *pair.diffusion_parameter;
+            if (pair.surface_energy) energy_[row] = *pair.surface_energy;
+        }
+    for (const double value : diffusion_)
+        if (!(value > 0.0)) throw Error("a diffusion parameter of zero (a rigid material) is not supported");
+    density_ = kiln::relative_density(state_);
+    state_.temperature = settings_.temperature;
+    find_pairs_with_margin(0.0);
+    next_duration_ = first_duration();
+}
+
+double Sintering::diffusion_over(std::int32_t a, std::int32_t b, double duration) const {
+    return diffusion_[static_cast<std::size_t>(a) * state_.materials.size() + static_cast<std::size_t>(b)] * duration;
+}
+
+void Sintering::find_pairs_with_margin(double closing) {
+    const Particles& particles = state_.particles;
+    const double mean = std::cbrt(particle_volume(particles) / static_cast<double>(particles.size()) * 0.75 / std::numbers::pi);
+    margin_left_ = std::max(list_margin * mean, 3.0 * closing);
+    std::vector<double> reach = particles.radius;
+    for (double& each : reach) each += 0.5 * margin_left_;
+    pairs_ = find_pairs(state_.box, particles.position, reach);
+    for (const Pair& pair : pairs_) {
+        const double radii = particles.radius[static_cast<std::size_t>(pair.i)] + particles.radius[static_cast<std::size_t>(pair.j)];
+        if (pair_vector(state_.box, particles.position, pair).norm() < coincident * radii)
+            throw Error("the centres of particles " + std::to_string(particles.id[static_cast<std::size_t>(pair.i)]) + " and " +
+                        std::to_string(particles.id[static_cast<std::size_t>(pair.j)]) + " coincide");
+    }
+}
+
+std::vector<PairStep> Sintering::pair_steps(double duration, const std::vector<Pair>& pairs) const {
+    const Particles& particles = state_.particles;
+    std::vector<PairStep> steps(pairs.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < pairs.size(); ++row) {
+        const auto i = static_cast<std::size_t>(pairs[row].i), j = static_cast<std::size_t>(pairs[row].j);
+        PairStep& step = steps[row];
+        step.row = row;
+        step.vector = pair_vector(state_.box, particles.position, pairs[row]);
+        step.distance = step.vector.norm();
+        step.overlap = particles.radius[i] + particles.radius[j] - step.distance;
+        step.reduced_radius = physics::reduced_radius(particles.radius[i], particles.radius[j]);
+        const std::int32_t a = particles.material[i], b = particles.material[j];
+        const double energy = energy_[static_cast<std::size_t>(a) * state_.materials.size() + static_cast<std::size_t>(b)];
+        step.force = physics::sintering_force(settings_.step.constants, step.reduced_radius, energy);
+        step.diffusion = diffusion_over(a, b, duration);
+        step.cubic = physics::normal_viscosity_factor(settings_.step.constants, step.reduced_radius) / step.diffusion;
+    }
+    return steps;
+}
+
+double Sintering::first_duration() const {
+    const std::vector<PairStep> steps = pair_steps(1.0, pairs_);  // of one second
+    double shortest = std::numeric_limits<double>::infinity();
+    double overlap = 0.0;
+    std::size_t contacts = 0;
+    for (const PairStep& step : steps)
+        if (step.overlap >= 0.0) {
+            overlap += step.overlap / step.reduced_radius;
+            ++contacts;
+        }
+    if (contacts > 0) overlap /= static_cast<double>(contacts);
+    for (const PairStep& step : steps) {  // time in which a pair of mean overlap closes by first_closing
+        const double start = overlap * step.reduced_radius, end = start + 2.0 * first_closing * step.reduced_radius;
+        shortest = std::min(shortest, step.cubic * (end * end * end - start * start * start) / (3.0 * step.force));
+    }
+    return std::isfinite(shortest) ? shortest : 1.0;
+}
+
+double Sintering::log_density_change(const Motion& motion) const {
+    return -std::log1p(motion.strain[0]) - std::log1p(motion.strain[1]) - std::log1p(motion.strain[2]);
+}
+
+double Sintering::closing_bound(const Motion& motion) const {
+    double largest = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : largest)
+    for (std::size_t row = 0; row < state_.particles.size(); ++row)
+        largest = std::max(largest, Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm());
+    return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * (2.0 * largest_radius_ + margin_left_);
+}
+
+Sintering::Trial Sintering::attempt(double duration, bool tight) {
+    const bool guessed = last_duration_ > 0.0;
+    const double scale = guessed ? duration / last_duration_ : 0.0;
+    Motion guess;
+    if (guessed) {
+        guess = last_motion_;
+        for (double& component : guess.displacement) component *= scale;
+        guess.strain *= scale;
+    }
+    StepSettings settings = settings_.step;
+    if (tight) settings.solver_tolerance *= 1e-2;
+    double closing = guessed ? 1.2 * closing_bound(guess) : 0.5 * margin_left_;
+    for (;;) {
+        if (margin_left_ < closing) find_pairs_with_margin(closing);
+        std::vector<Pair> active;
+        std::vector<PairStep> steps;
+        for (const PairStep& step : pair_steps(duration, pairs_)) {
+            if (step.overlap <= -closing) continue;
+            active.push_back(pairs_[step.row]);
+            steps.push_back(step);
+        }
+        SinterStep solver(state_.box, state_.particles.position, active, settings);
+        Trial trial;
+        trial.report = solver.solve(steps, guessed ? &guess : nullptr, trial.motion, &trial.first_order);
+        const double reached = closing_bound(trial.motion);
+        if (reached > closing) {  // pairs that were left out might have come to touch
+            closing = 1.2 * reached;
+            continue;
+        }
+        trial.closing = reached;
+        trial.log_density = log_density_change(trial.motion);
+        trial.first_log_density = log_density_change(trial.first_order);
+        return trial;
+    }
+}
+
+Sintering::Trial Sintering::land_on(double log_change, double& duration, const Trial& beyond) {
+    double low = 0.0, low_change = 0.0, high = duration, high_change = beyond.log_density;
+    Trial trial;
+    for (int iteration = 0; iteration < most_landings; ++iteration) {
+        double share = (log_change - low_change) / (high_change - low_change);
+        if (iteration > 3) share = std::clamp(share, 0.02, 0.98);
+        duration = low + share * (high - low);
+        trial = attempt(duration, true);
+        const double miss = trial.log_density - log_change;
+        if (std::abs(miss) <= settings_.density_accuracy) break;
+        if (miss > 0.0) {
+            high = duration;
+            high_change = trial.log_density;
+        } else {
+            low = duration;
+            low_change = trial.log_density;
+        }
+    }
+    return trial;
+}
+
+void Sintering::apply(const Trial& trial, double duration) {
+    Box& box = state_.box;
+    const Vec3 stretch = Vec3::Ones() + trial.motion.strain;
+    std::vector<Vec3>& position = state_.particles.position;
+    for (std::size_t row = 0; row < position.size(); ++row)
+        position[row] = box.origin + stretch.cwiseProduct(position[row] - box.origin) +
+                        Eigen::Map<const Vec3>(&trial.motion.displacement[3 * row]);
+    box.lengths = box.lengths.cwiseProduct(stretch);
+    strain_ += stretch.array().log().matrix();
+    state_.time += duration;
+    density_ = kiln::relative_density(state_);
+    margin_left_ -= trial.closing;
+    last_motion_ = trial.motion;
+    last_duration_ = duration;
+}
+
+StepRecord Sintering::advance(double latest_time, double highest_density) {
+    const double wanted_change = std::log(highest_density / density_);
+    double duration = std::min(next_duration_, latest_time - state_.time);
+    const bool ends_on_time = duration < next_duration_;
+    const double wanted_error = settings_.tolerance / (third_order_factor * typical_log_range);
+    Trial trial;
+    double difference = 0.0;
+    for (int rejected = 0;; ++rejected) {
+        trial = attempt(duration, false);
+        difference = std::abs(trial.log_density - trial.first_log_density);
+        if (difference <= 2.0 * wanted_error && std::abs(trial.log_density) <= largest_log_step && trial.report.converged) break;
+        if (rejected == most_rejections) break;  // the record says that it did not converge
+        duration *= std::clamp(0.8 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.2, 0.7);
+    }
+    const double growth = std::clamp(0.9 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.5, 2.5);
+    next_duration_ = ends_on_time && duration < next_duration_ ? std::max(next_duration_, duration * growth) : duration * growth;
+    const double room = 0.8 * largest_log_step / std::max(std::abs(trial.log_density), 1e-300);
+    next_duration_ = std::min(next_duration_, duration * std::max(room, 0.5));
+
+    if (trial.log_density > wanted_change) {
+        trial = land_on(wanted_change, duration, trial);
+        difference = std::abs(trial.log_density - trial.first_log_density);
+    }
+    idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
+    if (idle_steps_ > most_idle_steps && std::isfinite(highest_density))
+        throw Error("the density stays at " + std::to_string(density_) + "; no contact is left that densifies the box, so " +
+                    std::to_string(highest_density) + " cannot be reached");
+    apply(trial, duration);
+    ++steps_;
+    error_ += third_order_factor * difference * std::abs(trial.log_density);
+    StepRecord record{state_.time, duration,
+                      density_,    strain_,
+                      0.0,         0.0,
+                      error_,      trial.report.newton, trial.report.conjugate_gradients, trial.report.converged};
+    count_contacts(record);
+    return record;
+}
+
+void Sintering::count_contacts(StepRecord& record) const {
+    const Particles& particles = state_.particles;
+    std::size_t contacts = 0;
+    double ratio = 0.0;
+    for (const Pair& pair : pairs_) {
+        const double radii = particles.radius[static_cast<std::size_t>(pair.i)] + particles.radius[static_cast<std::size_t>(pair.j)];
+        const double overlap = radii - pair_vector(state_.box, particles.position, pair).norm();
+        if (overlap < 0.0) continue;
+        ++contacts;
+        ratio += overlap / radii;
+    }
+    record.coordination_number = 2.0 * static_cast<double>(contacts) / static_cast<double>(particles.size());
+    record.mean_overlap_ratio = contacts > 0 ? ratio / static_cast<double>(contacts) : 0.0;
+}
+
+State Sintering::state() const {
+    State result = state_;
+    std::vector<std::int32_t> back(order_.size());
+    for (std::size_t row = 0; row < order_.size(); ++row) back[static_cast<std::size_t>(order_[row])] = static_cast<std::int32_t>(row);
+    result.particles = take_rows(state_.particles, back);
+    for (Vec3& position : result.particles.position) position = result.box.wrap(position);
+    return result;
+}
+
+}  // namespace kiln::numerics
