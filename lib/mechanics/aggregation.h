@@ -1,0 +1,26 @@
+// aggregation.h: the coarse space of the multigrid preconditioner: aggregates of neighbours and their rigid motions.
+#pragma once
+
+#include <vector>
+
+#include "mechanics/block_matrix.h"
+#include "mechanics/multigrid.h"
+
+namespace kiln::mechanics {
+
+/// A node's aggregate and the aggregates' root nodes.
+struct Aggregates {
+    std::vector<std::int32_t> of;    // node -> aggregate
+    std::vector<std::int32_t> root;  // aggregate -> node
+};
+
+/// Groups of a node and its neighbours, in the order of the nodes.
+Aggregates find_aggregates(const BlockMatrix& matrix);
+
+/// Block of a rigid motion: displacement and rotation at `lever` from a point that moves and turns by the six values.
+Mat6 rigid_motion(const Vec3& lever);
+
+/// Prolongation that moves every aggregate as a rigid body, about its root.
+BlockMatrix rigid_prolongation(const Aggregates& aggregates, const NodeGeometry& geometry);
+
+}  // namespace kiln::mechanics

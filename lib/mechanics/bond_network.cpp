@@ -1,0 +1,249 @@
+// bond_network.cpp: from a state's bonds to springs, blocks and forces.
+#include "mechanics/bond_network.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mechanics/connectivity.h"
+#include "physics/materials.h"
+
+namespace kiln::mechanics {
+
+namespace {
+
+using Mat3 = Eigen::Matrix3d;
+
+std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
+
+struct Moduli {
+    double young, shear;  // Pa
+};
+
+std::vector<Moduli> moduli_of(const std::vector<Material>& materials) {
+    std::vector<Moduli> moduli;
+    for (const Material& material : materials) {
+        const double young = physics::required(material.young_modulus, material, "young_modulus");
+        const double poisson = physics::required(material.poisson_ratio, material, "poisson_ratio");
+        moduli.push_back({young, young / (2.0 * (1.0 + poisson))});
+    }
+    return moduli;
+}
+
+double harmonic_mean(double a, double b) { return 2.0 * a * b / (a + b); }
+
+Mat3 cross_matrix(const Vec3& v) {
+    Mat3 matrix;
+    matrix << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
+    return matrix;
+}
+
+/// Springs of a bond in space: for the relative displacement and the relative rotation at its middle.
+struct BondTensor {
+    Mat3 displacement, rotation;
+};
+
+BondTensor tensor_of(const BondNetwork& network, std::size_t bond) {
+    const physics::BondStiffness& k = network.stiffness[bond];
+    const Vec3 n = network.vector[bond].normalized();
+    const Mat3 along = n * n.transpose();
+    const Mat3 across = Mat3::Identity() - along;
+    return {k.normal * along + k.shear * across, k.torsion * along + k.bending * across};
+}
+
+/// Blocks of one bond for its nodes i and j. With the relative displacement u_j - u_i + S (q_i + q_j) at the bond's middle,
+/// S q = d x q/2 per rotation length, and the relative rotation q_j - q_i.
+struct BondBlocks {
+    Mat6 ii, ij, jj;
+};
+
+BondBlocks blocks_of(const BondNetwork& network, std::size_t bond) {
+    const BondTensor k = tensor_of(network, bond);
+    const double length = network.rotation_length;
+    const Mat3 S = cross_matrix(network.vector[bond]) / (2.0 * length);
+    const Mat3& C = k.displacement;
+    const Mat3 CS = C * S;
+    const Mat3 SCS = S.transpose() * CS;
+    const Mat3 rotation = k.rotation / (length * length);
+    BondBlocks blocks;
+    blocks.ii << C, -CS, -CS.transpose(), SCS + rotation;
+    blocks.jj << C, CS, CS.transpose(), SCS + rotation;
+    blocks.ij << -C, -CS, CS.transpose(), SCS - rotation;
+    return blocks;
+}
+
+/// Bonds thick enough to carry anything.
+std::vector<std::int32_t> carrying_bonds(const State& state) {
+    std::vector<std::int32_t> rows;
+    for (std::size_t bond = 0; bond < state.bonds->size(); ++bond) {
+        const auto [i, j] = state.bonds->pair[bond];
+        const double smaller = std::min(state.particles.radius[at(i)], state.particles.radius[at(j)]);
+        if (state.bonds->radius[bond] > negligible_radius * smaller) rows.push_back(static_cast<std::int32_t>(bond));
+    }
+    return rows;
+}
+
+/// All particles by rising x.
+std::vector<std::int32_t> along_x(const Particles& particles) {
+    std::vector<std::int32_t> order(particles.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+        return particles.position[at(a)][0] < particles.position[at(b)][0];
+    });
+    return order;
+}
+
+void add_bond(BondedBody& body, const State& state, const BondModel& model, const std::vector<Moduli>& moduli,
+              std::int32_t row, std::array<std::int32_t, 2> nodes) {
+    const Bonds& bonds = *state.bonds;
+    const auto [first, second] = bonds.pair[at(row)];
+    const Vec3 vector = bond_vector(state, bonds, at(row));
+    if (vector.norm() == 0.0) {
+        throw Error("bond " + std::to_string(row) + ": the centres of particles " +
+                    std::to_string(state.particles.id[at(first)]) + " and " + std::to_string(state.particles.id[at(second)]) +
+                    " coincide");
+    }
+    const Moduli a = moduli[at(state.particles.material[at(first)])];
+    const Moduli b = moduli[at(state.particles.material[at(second)])];
+    body.network.pair.push_back(nodes);
+    body.network.vector.push_back(vector);
+    body.network.stiffness.push_back(physics::bond_stiffness(
+        model.law, model.shear, harmonic_mean(a.young, b.young), harmonic_mean(a.shear, b.shear),
+        {state.particles.radius[at(first)], state.particles.radius[at(second)], vector.norm(), bonds.radius[at(row)],
+         bonds.length[at(row)]}));
+    body.bond.push_back(row);
+}
+
+}  // namespace
+
+BondedBody bonded_body(const State& state, const BondModel& model) {
+    if (!state.bonds || state.bonds->size() == 0) throw Error("the state has no bonds; run bondify first");
+    const std::vector<Moduli> moduli = moduli_of(state.materials);
+    const std::vector<std::int32_t> carrying = carrying_bonds(state);
+    std::vector<std::array<std::int32_t, 2>> pairs;
+    for (const std::int32_t row : carrying) pairs.push_back(state.bonds->pair[at(row)]);
+    const Pieces pieces = find_pieces(along_x(state.particles), pairs);
+    const std::size_t largest = pieces.largest();
+    if (pieces.size(largest) < 2) throw Error("no bond of the state is thick enough to carry a load");
+
+    BondedBody body;
+    body.negligible_bonds = state.bonds->size() - carrying.size();
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+        if (pieces.size(piece) == 1) ++body.rattlers;
+        if (pieces.size(piece) == 1 || piece == largest) continue;
+        ++body.fragments;
+        body.fragment_particles += pieces.size(piece);
+    }
+    double radii = 0.0;
+    std::vector<std::int32_t> node_of(state.particles.size(), -1);
+    for (const std::int32_t particle : pieces.of(largest)) {
+        node_of[at(particle)] = static_cast<std::int32_t>(body.particle.size());
+        body.particle.push_back(particle);
+        body.network.position.push_back(state.box.wrap(state.particles.position[at(particle)]));
+        radii += state.particles.radius[at(particle)];
+    }
+    body.network.rotation_length = radii / static_cast<double>(body.particle.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        if (state.box.periodic[at(axis)]) body.network.period[axis] = state.box.lengths[axis];
+    }
+    for (std::size_t k = 0; k < carrying.size(); ++k) {
+        const std::array nodes{node_of[at(pairs[k][0])], node_of[at(pairs[k][1])]};
+        if (nodes[0] >= 0) add_bond(body, state, model, moduli, carrying[k], nodes);
+    }
+    return body;
+}
+
+Vec3 between(const BondNetwork& network, std::int32_t i, std::int32_t j) {
+    Vec3 vector = network.position[at(j)] - network.position[at(i)];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double period = network.period[axis];
+        if (period > 0.0) vector[axis] -= period * std::round(vector[axis] / period);
+    }
+    return vector;
+}
+
+BlockMatrix stiffness_matrix(const BondNetwork& network) {
+    const Incidence incidence = find_incidence(network.nodes(), network.pair);
+    const auto other_end = [&](std::size_t bond, std::int32_t node) {
+        return network.pair[bond][0] == node ? network.pair[bond][1] : network.pair[bond][0];
+    };
+    const auto nodes = static_cast<std::int32_t>(network.nodes());
+    BlockMatrix matrix;
+    matrix.columns = nodes;
+    for (std::int32_t node = 0; node < nodes; ++node) {
+        const auto begin = static_cast<std::ptrdiff_t>(matrix.column.size());
+        matrix.column.push_back(node);
+        for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
+            matrix.column.push_back(other_end(at(incidence.bond[at(k)]), node));
+        }
+        std::sort(matrix.column.begin() + begin, matrix.column.end());
+        matrix.column.erase(std::unique(matrix.column.begin() + begin, matrix.column.end()), matrix.column.end());
+        matrix.start.push_back(static_cast<std::int64_t>(matrix.column.size()));
+    }
+    matrix.block.assign(matrix.column.size(), Mat6::Zero());
+#pragma omp parallel for schedule(static)
+    for (std::int32_t node = 0; node < nodes; ++node) {
+        const auto begin = matrix.column.begin() + matrix.first(node), end = matrix.column.begin() + matrix.last(node);
+        const auto block_at = [&](std::int32_t column) -> Mat6& {
+            return matrix.block[at(std::lower_bound(begin, end, column) - matrix.column.begin())];
+        };
+        for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
+            const auto bond = at(incidence.bond[at(k)]);
+            const auto [i, j] = network.pair[bond];
+            const BondBlocks blocks = blocks_of(network, bond);
+            if (i == j) {
+                block_at(node) += blocks.ii + blocks.jj + blocks.ij + blocks.ij.transpose();
+            } else if (node == i) {
+                block_at(node) += blocks.ii;
+                block_at(j) += blocks.ij;
+            } else {
+                block_at(node) += blocks.jj;
+                block_at(i) += blocks.ij.transpose();
+            }
+        }
+    }
+    return matrix;
+}
+
+std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement, const Mat3& strain) {
+    std::vector<BondLoad> loads(network.bonds());
+#pragma omp parallel for schedule(static)
+    for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
+        const Vec6& first = displacement[at(network.pair[bond][0])];
+        const Vec6& second = displacement[at(network.pair[bond][1])];
+        const Vec3& d = network.vector[bond];
+        const double length = network.rotation_length;
+        const Vec3 twist = (first.tail<3>() + second.tail<3>()) / (2.0 * length);
+        const Vec3 opening = second.head<3>() - first.head<3>() + d.cross(twist) + strain * d;
+        const Vec3 turning = (second.tail<3>() - first.tail<3>()) / length;
+        const BondTensor k = tensor_of(network, bond);
+        loads[bond].force = k.displacement * opening;
+        loads[bond].moment = k.rotation * turning;
+        loads[bond].tension = loads[bond].force.dot(d.normalized());
+    }
+    return loads;
+}
+
+Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads) {
+    const Incidence incidence = find_incidence(network.nodes(), network.pair);
+    const auto nodes = static_cast<std::int32_t>(network.nodes());
+    Vector forces(network.nodes(), Vec6::Zero());
+#pragma omp parallel for schedule(static)
+    for (std::int32_t node = 0; node < nodes; ++node) {
+        for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
+            const auto bond = at(incidence.bond[at(k)]);
+            const BondLoad& load = loads[bond];
+            const Vec3 lever = 0.5 * network.vector[bond].cross(load.force);
+            for (const int end : {0, 1}) {
+                if (network.pair[bond][at(end)] != node) continue;
+                const double sign = end == 0 ? 1.0 : -1.0;
+                forces[at(node)].head<3>() += sign * load.force;
+                forces[at(node)].tail<3>() += (lever + sign * load.moment) / network.rotation_length;
+            }
+        }
+    }
+    return forces;
+}
+
+}  // namespace kiln::mechanics

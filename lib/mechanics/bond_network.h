@@ -1,0 +1,69 @@
+// bond_network.h: a piece of bonded particles as a network of springs, its stiffness matrix and the forces in its bonds.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/state.h"
+#include "mechanics/block_matrix.h"
+#include "physics/bond_law.h"
+
+namespace kiln::mechanics {
+
+/// Nodes with six freedoms each: displacement (m) and rotation (rad) times rotation_length (m).
+struct BondNetwork {
+    std::vector<Vec3> position;                    // m
+    Vec3 period = Vec3::Zero();                    // m, box length along a periodic axis, else 0
+    std::vector<std::array<std::int32_t, 2>> pair;
+    std::vector<Vec3> vector;                      // m, from the first node to the second (or its image)
+    std::vector<physics::BondStiffness> stiffness;
+    double rotation_length = 1.0;                  // m
+
+    std::size_t nodes() const { return position.size(); }
+    std::size_t bonds() const { return pair.size(); }
+};
+
+struct BondModel {
+    physics::BondLaw law = physics::BondLaw::series;
+    physics::BondShear shear = physics::BondShear::section;
+};
+
+/// The largest piece of a state as a network, and what was left out of it.
+struct BondedBody {
+    BondNetwork network;
+    std::vector<std::int32_t> particle;  // node -> row of the state's particles
+    std::vector<std::int32_t> bond;      // bond of the network -> row of the state's bonds
+    std::size_t fragments = 0;           // further pieces of two particles or more
+    std::size_t fragment_particles = 0;  // in those
+    std::size_t rattlers = 0;            // particles without a bond
+    std::size_t negligible_bonds = 0;    // thinner than negligible_radius
+};
+
+/// A bond thinner than this share of its smaller sphere's radius carries nothing: its bending stiffness is 1e-12 of a full one's.
+inline constexpr double negligible_radius = 1e-3;
+
+/// Network of the largest piece; nodes in an order that keeps neighbours together, from low x to high x. Bonds between unlike
+/// materials take the harmonic means of their moduli. Throws Error for a state without bonds or material data, or centres that coincide.
+BondedBody bonded_body(const State& state, const BondModel& model);
+
+/// Node j relative to node i, m; the nearest image along periodic axes.
+Vec3 between(const BondNetwork& network, std::int32_t i, std::int32_t j);
+
+/// Symmetric matrix, N/m, positive semidefinite: zero energy for rigid motions of a free network and for translations of a periodic one.
+BlockMatrix stiffness_matrix(const BondNetwork& network);
+
+/// What a bond does to its second node is the opposite of `force`: tension pulls the first node along +vector.
+struct BondLoad {
+    Vec3 force;        // N, on the first node
+    Vec3 moment;       // N m, at the bond's middle, on the first node
+    double tension;    // N, along the bond, positive when it pulls
+};
+
+/// Loads of all bonds under a displacement field and a uniform strain of the whole (symmetric 3x3; zero for a free network).
+std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement,
+                                 const Eigen::Matrix3d& strain = Eigen::Matrix3d::Zero());
+
+/// Sum over the bonds at each node of what they do to it: minus the stiffness matrix times the displacement, when the strain is zero.
+Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads);
+
+}  // namespace kiln::mechanics

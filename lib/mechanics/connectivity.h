@@ -1,0 +1,36 @@
+// connectivity.h: which particles hang together through bonds.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kiln::mechanics {
+
+/// Particles connected by bonds, piece by piece. Within a piece they stand breadth first from the piece's first particle in
+/// `start_order`, so that neighbours stand near each other.
+struct Pieces {
+    std::vector<std::int32_t> particle;  // every particle once
+    std::vector<std::size_t> start;      // pieces + 1: where each piece begins in `particle`
+
+    std::size_t size() const { return start.size() - 1; }
+    std::size_t size(std::size_t piece) const { return start[piece + 1] - start[piece]; }
+    std::span<const std::int32_t> of(std::size_t piece) const { return std::span(particle).subspan(start[piece], size(piece)); }
+    /// The piece with the most particles; the first of equals.
+    std::size_t largest() const;
+};
+
+/// start_order: all particles, in the order in which they may begin a piece.
+Pieces find_pieces(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs);
+
+/// For each of `count` particles the bonds at it, ascending: bonds of particle i stand at [start[i], start[i + 1]). A bond of a
+/// particle with its own image stands once.
+struct Incidence {
+    std::vector<std::int64_t> start;
+    std::vector<std::int32_t> bond;
+};
+
+Incidence find_incidence(std::size_t count, std::span<const std::array<std::int32_t, 2>> pairs);
+
+}  // namespace kiln::mechanics

@@ -1,0 +1,54 @@
+// elastic_solver.cpp: grounding, preconditioning and solving of a bond network.
+#include "mechanics/elastic_solver.h"
+
+namespace kiln::mechanics {
+
+namespace {
+
+/// Two nodes a bond: a sum of such matrices is at most twice its block diagonal.
+constexpr double largest_eigenvalue_of_bonds = 2.0;
+
+std::size_t middle_node(const BondNetwork& network) {
+    Vec3 centre = Vec3::Zero();
+    for (const Vec3& position : network.position) centre += position;
+    centre /= static_cast<double>(network.nodes());
+    std::size_t nearest = 0;
+    for (std::size_t node = 1; node < network.nodes(); ++node) {
+        if ((network.position[node] - centre).squaredNorm() < (network.position[nearest] - centre).squaredNorm()) nearest = node;
+    }
+    return nearest;
+}
+
+NodeGeometry geometry_of(const BondNetwork& network) {
+    NodeGeometry geometry{network.position, network.period / network.rotation_length};
+    for (Vec3& position : geometry.position) position /= network.rotation_length;
+    return geometry;
+}
+
+}  // namespace
+
+ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground)
+    : matrix_(stiffness_matrix(network)), grounded_(middle_node(network)) {
+    const auto row = static_cast<std::int32_t>(grounded_);
+    for (std::int64_t k = matrix_.first(row); k < matrix_.last(row); ++k) {
+        if (matrix_.column[static_cast<std::size_t>(k)] != row) continue;
+        Mat6& block = matrix_.block[static_cast<std::size_t>(k)];
+        const double mean = block.trace() / 6.0;
+        ground_.head<3>().setConstant(mean);
+        if (ground == Ground::displacement_and_rotation) ground_.tail<3>().setConstant(mean);
+        block.diagonal() += ground_;
+    }
+    preconditioner_ = std::make_unique<Multigrid>(matrix_, geometry_of(network), largest_eigenvalue_of_bonds);
+}
+
+SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
+    return conjugate_gradient(
+        matrix_, [this](const Vector& r, Vector& z) { preconditioner_->apply(r, z); }, load, x, tolerance, max_iterations);
+}
+
+void ElasticSolver::forces(const Vector& displacement, Vector& force) const {
+    multiply(matrix_, displacement, force);
+    force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
+}
+
+}  // namespace kiln::mechanics

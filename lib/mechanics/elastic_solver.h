@@ -1,0 +1,38 @@
+// elastic_solver.h: linear response of a bond network: matrix, preconditioner and conjugate gradients, built once for many loads.
+#pragma once
+
+#include <memory>
+
+#include "mechanics/bond_network.h"
+#include "mechanics/conjugate_gradient.h"
+#include "mechanics/multigrid.h"
+
+namespace kiln::mechanics {
+
+/// Freedoms of one node near the middle that springs hold to the ground, so that the matrix has no rigid motion left. The springs are
+/// statically determinate: under loads in equilibrium they carry nothing, whatever their stiffness.
+enum class Ground {
+    displacement_and_rotation,  // of a free body
+    displacement,               // of a periodic one
+};
+
+class ElasticSolver {
+   public:
+    ElasticSolver(const BondNetwork& network, Ground ground);
+
+    /// Displacements under a load in equilibrium; x is where the search starts. See conjugate_gradient for the result.
+    SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
+
+    /// Forces that hold the network in a displacement field: the stiffness matrix without the ground, times the displacement.
+    void forces(const Vector& displacement, Vector& force) const;
+
+    const Multigrid& preconditioner() const { return *preconditioner_; }
+
+   private:
+    BlockMatrix matrix_;  // with the ground springs
+    std::size_t grounded_ = 0;
+    Vec6 ground_ = Vec6::Zero();
+    std::unique_ptr<Multigrid> preconditioner_;
+};
+
+}  // namespace kiln::mechanics

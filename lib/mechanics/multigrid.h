@@ -1,0 +1,56 @@
+// multigrid.h: preconditioner for bonded particles by smoothed aggregation, coarse freedoms being the rigid motions of aggregates.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "core/types.h"
+#include "mechanics/block_matrix.h"
+
+namespace kiln::mechanics {
+
+/// Where the nodes of a matrix are, in units of the length that its rotations are multiplied by.
+struct NodeGeometry {
+    std::vector<Vec3> position;
+    Vec3 period;  // 0 along an axis that is not periodic
+
+    /// From node i to the nearest image of node j.
+    Vec3 between(std::int32_t i, std::int32_t j) const;
+};
+
+/// One V-cycle with polynomial smoothing: symmetric, positive definite, and independent of the number of threads.
+/// Vanek, Mandel & Brezina 1996 (smoothed aggregation); the aggregates' six rigid motions need no orthogonalisation, since a coarse
+/// node is again a point with a displacement and a rotation. Smoother: Chebyshev iteration on the block-Jacobi matrix (Adams et al. 2003).
+class Multigrid {
+   public:
+    /// matrix: symmetric positive definite, kept by reference; largest_eigenvalue: bound for that of the block-Jacobi matrix.
+    Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double largest_eigenvalue);
+
+    /// z = M^-1 r.
+    void apply(const Vector& r, Vector& z);
+
+    std::size_t levels() const { return levels_.size(); }
+    /// Blocks of all levels over those of the finest.
+    double complexity() const;
+
+   private:
+    struct Level {
+        BlockMatrix own;  // empty on the finest level
+        const BlockMatrix* matrix = nullptr;
+        std::vector<Mat6> inverse_diagonal;
+        double largest_eigenvalue = 0.0;
+        BlockMatrix prolongation;  // from the next coarser level
+        ColumnIndex restriction;
+        Vector load, solution, step;
+    };
+
+    void build(NodeGeometry geometry);
+    void cycle(std::size_t index);
+    void smooth(Level& level, bool from_zero);
+    void solve_coarsest(Level& level);
+
+    std::vector<Level> levels_;
+    Eigen::LLT<Eigen::MatrixXd> coarsest_;
+};
+
+}  // namespace kiln::mechanics
