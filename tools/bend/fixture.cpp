@@ -1,0 +1,151 @@
+// fixture.cpp: placing cylinders around a bar.
+#include "tools/bend/fixture.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "physics/hertz.h"
+#include "physics/materials.h"
+
+namespace kiln::bend {
+
+namespace {
+
+constexpr double default_span = 0.8;     // of the length
+constexpr double default_radius = 0.75;  // of the height, as in ASTM C1161
+constexpr double steepest_cosine = 0.5;  // of a contact normal against z
+constexpr double reach = 0.1;            // of the height: particles that far behind the foremost one, and two radii more, may come to touch
+
+struct Sphere {
+    std::int32_t node;
+    Vec3 position;  // m
+    double radius;  // m
+    std::int32_t material;
+};
+
+std::vector<Sphere> spheres_of(const Specimen& specimen) {
+    std::vector<Sphere> spheres;
+    for (std::size_t node = 0; node < specimen.body.particle.size(); ++node) {
+        const auto row = static_cast<std::size_t>(specimen.body.particle[node]);
+        spheres.push_back({static_cast<std::int32_t>(node), specimen.body.network.position[node],
+                           specimen.state.particles.radius[row], specimen.state.particles.material[row]});
+    }
+    return spheres;
+}
+
+/// One cylinder's contacts: side +1 for a punch above, -1 for a support below.
+void add_contacts(std::vector<mechanics::WallContact>& contacts, const std::vector<Sphere>& spheres, const Specimen& specimen,
+                  double x, double cylinder_radius, double side) {
+    struct Candidate {
+        const Sphere* sphere;
+        double height, cosine;  // height, m: of the cylinder's axis above the sphere's side when they touch
+    };
+    std::vector<Candidate> candidates;
+    double foremost = -HUGE_VAL, largest = 0.0;
+    for (const Sphere& sphere : spheres) {
+        const double distance = cylinder_radius + sphere.radius, offset = sphere.position[0] - x;
+        const double cosine = std::sqrt(std::max(0.0, 1.0 - offset * offset / (distance * distance)));
+        if (cosine < steepest_cosine) continue;
+        candidates.push_back({&sphere, side * sphere.position[2] + distance * cosine, cosine});
+        foremost = std::max(foremost, candidates.back().height);
+        largest = std::max(largest, sphere.radius);
+    }
+    for (const auto& [sphere, height, cosine] : candidates) {
+        const double gap = foremost - height;
+        if (gap > reach * specimen.size[2] + 2.0 * largest) continue;
+        const Material& material = specimen.state.materials[static_cast<std::size_t>(sphere->material)];
+        contacts.push_back({sphere->node, side > 0.0, gap, cosine, sphere->radius,
+                            physics::contact_modulus(physics::required(material.young_modulus, material, "young_modulus"),
+                                                     physics::required(material.poisson_ratio, material, "poisson_ratio"))});
+    }
+    if (candidates.empty()) {
+        throw Error(side > 0.0 ? "the punch touches no particle" : "a support touches no particle");
+    }
+}
+
+/// Weights w of nodes so that the sum of w u is the value at (x, y) of the function a + b x + c y + e x2 fitted to u there.
+std::vector<double> fit_weights(const std::vector<Vec3>& positions, double x, double y, double scale) {
+    Eigen::MatrixXd terms(static_cast<Eigen::Index>(positions.size()), 4);
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        const double dx = (positions[k][0] - x) / scale, dy = (positions[k][1] - y) / scale;
+        terms.row(static_cast<Eigen::Index>(k)) << 1.0, dx, dy, dx * dx;
+    }
+    const Eigen::Matrix4d normal = terms.transpose() * terms;
+    const Eigen::VectorXd weights = terms * normal.completeOrthogonalDecomposition().solve(Eigen::Vector4d::UnitX());
+    return {weights.begin(), weights.end()};
+}
+
+}  // namespace
+
+Fixture place_fixture(const Specimen& specimen, const Options& options) {
+    Fixture fixture;
+    const double length = specimen.size[0];
+    fixture.span = options.span > 0.0 ? options.span : default_span * length;
+    fixture.radius = options.punch_radius > 0.0 ? options.punch_radius : default_radius * specimen.size[2];
+    fixture.middle = specimen.origin[0] + length / 2.0;
+    fixture.centre_y = specimen.origin[1] + specimen.size[1] / 2.0;
+    std::ostringstream words;
+    if (fixture.span >= length) {
+        words << "the span of " << fixture.span << " m is not shorter than the bar of " << length << " m";
+        throw Error(words.str());
+    }
+    const mechanics::BondedBody& body = specimen.body;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t node = 0; node < body.particle.size(); ++node) {
+        const double radius = specimen.state.particles.radius[static_cast<std::size_t>(body.particle[node])];
+        low = std::min(low, body.network.position[node][0] - radius);
+        high = std::max(high, body.network.position[node][0] + radius);
+    }
+    const double left = fixture.middle - fixture.span / 2.0, right = fixture.middle + fixture.span / 2.0;
+    if (low > left || high < right) {
+        words << (body.fragments > 0 ? "the bar is in pieces: the largest, " : "the bar does not reach its supports: it has ")
+              << body.particle.size() << " of " << specimen.state.particles.size() << " particles, reaches from x = " << low << " to "
+              << high << " m, and the supports are at " << left << " and " << right << " m";
+        throw Error(words.str());
+    }
+    return fixture;
+}
+
+std::vector<mechanics::WallContact> find_contacts(const Specimen& specimen, const Fixture& fixture) {
+    const std::vector<Sphere> spheres = spheres_of(specimen);
+    std::vector<mechanics::WallContact> contacts;
+    add_contacts(contacts, spheres, specimen, fixture.middle - fixture.span / 2.0, fixture.radius, -1.0);
+    add_contacts(contacts, spheres, specimen, fixture.middle + fixture.span / 2.0, fixture.radius, -1.0);
+    add_contacts(contacts, spheres, specimen, fixture.middle, fixture.radius, 1.0);
+    return contacts;
+}
+
+Gauge::Gauge(const Specimen& specimen, const Fixture& fixture) {
+    const mechanics::BondNetwork& network = specimen.body.network;
+    const double layer = 2.0 * network.rotation_length;  // mean diameter
+    const double half_width = std::max(specimen.size[2] / 8.0, 2.0 * layer);
+    for (const double place : {-0.5, 0.0, 0.5}) {
+        const double x = fixture.middle + place * fixture.span;
+        const auto near = [&](std::size_t node) { return std::abs(network.position[node][0] - x) <= half_width; };
+        double lowest = HUGE_VAL;
+        for (std::size_t node = 0; node < network.nodes(); ++node) {
+            if (near(node)) lowest = std::min(lowest, network.position[node][2]);
+        }
+        std::vector<std::int32_t> nodes;
+        std::vector<Vec3> positions;
+        for (std::size_t node = 0; node < network.nodes(); ++node) {
+            if (!near(node) || (place == 0.0 && network.position[node][2] > lowest + layer)) continue;
+            nodes.push_back(static_cast<std::int32_t>(node));
+            positions.push_back(network.position[node]);
+        }
+        const std::vector<double> weights = fit_weights(positions, x, fixture.centre_y, half_width);
+        // The supports' mean counts half each, upwards; the lower face under the load counts downwards.
+        const double sign = place == 0.0 ? -1.0 : 0.5;
+        for (std::size_t k = 0; k < nodes.size(); ++k) weights_.push_back({nodes[k], sign * weights[k]});
+    }
+}
+
+double Gauge::read(const mechanics::Vector& displacement) const {
+    double sum = 0.0;
+    for (const auto& [node, weight] : weights_) sum += weight * displacement[static_cast<std::size_t>(node)][2];
+    return sum;
+}
+
+}  // namespace kiln::bend

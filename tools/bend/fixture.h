@@ -1,0 +1,41 @@
+// fixture.h: the three cylinders of the test, what they can touch, and how the deflection is read.
+#pragma once
+
+#include <vector>
+
+#include "mechanics/wall_contact.h"
+#include "tools/bend/options.h"
+#include "tools/bend/specimen.h"
+
+namespace kiln::bend {
+
+/// Cylinders along y; lengths in m.
+struct Fixture {
+    double span, radius;
+    double middle;    // x of the punch's axis
+    double centre_y;  // of the bar
+};
+
+/// Spans and radii of the options, or their defaults. Throws Error if the span is not shorter than the bar, or if the bar's largest
+/// piece does not reach from support to support.
+Fixture place_fixture(const Specimen& specimen, const Options& options);
+
+/// Particles that a cylinder can come to touch; each cylinder just touches its nearest one. Throws Error if one finds none.
+std::vector<mechanics::WallContact> find_contacts(const Specimen& specimen, const Fixture& fixture);
+
+/// Reads a deflection from the displacements of nodes, m: the lower face under the load, downwards, against the mean of the
+/// cross-sections above the two supports. Local dents of the contacts hardly enter, rigid motions not at all.
+class Gauge {
+   public:
+    Gauge(const Specimen& specimen, const Fixture& fixture);
+    double read(const mechanics::Vector& displacement) const;
+
+   private:
+    struct Weight {
+        std::int32_t node;
+        double weight;
+    };
+    std::vector<Weight> weights_;
+};
+
+}  // namespace kiln::bend

@@ -1,0 +1,51 @@
+// main.cpp: bend, three-point bending of bonded bars, state by state.
+#include <optional>
+
+#include "cli/progress.h"
+#include "cli/tool.h"
+#include "io/files.h"
+#include "tools/bend/report.h"
+
+namespace {
+
+using namespace kiln;
+
+int run(int argc, char** argv) {
+    cli::Common common;
+    bend::Options options;
+    CLI::App app{"", "bend"};
+    options.add_to(app);
+    common.add_to(app);
+    cli::parse(app, argc, argv, common);
+
+    io::Input input(common.files);
+    io::Output output(common.output, true);
+    std::optional<io::Output> states;
+    if (!options.states.empty()) states.emplace(options.states, common.text);
+    cli::Progress progress("bend", common);
+    bool converged = true;
+    std::size_t number = 0;
+    while (auto state = input.next_state()) {
+        const std::string name = "state " + std::to_string(++number);
+        Json history = state->history;
+        const bend::Watch watch = [&](double done) {
+            progress.show(done, name);
+            return !cli::stop_requested();
+        };
+        const bend::Result result = bend::bend_static(std::move(*state), options, watch);
+        if (cli::stop_requested()) return cli::interrupted;
+        progress.clear();
+        if (!result.converged) cli::warn("bend", name + ": some forces stayed unbalanced; see \"residual\" in the result");
+        converged = converged && result.converged;
+        history.push_back(cli::history_entry("bend", app, bend::summary(result)));
+        output.write(bend::document(result, options, history));
+        if (states) states->write(bend::bent_state(result, history));
+    }
+    output.commit();
+    if (states) states->commit();
+    return converged ? cli::done : cli::not_converged;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return kiln::cli::run("bend", argc, argv, run); }

@@ -1,0 +1,73 @@
+// options.cpp: the options of bend, their help and what must not be combined.
+#include "tools/bend/options.h"
+
+#include <map>
+
+#include "cli/units.h"
+
+namespace kiln::bend {
+
+namespace {
+
+constexpr const char* description =
+    "Bends a bar of bonded particles on two supports under a punch: three rigid cylinders along y, the bar along x, the load along "
+    "-z. The bar is cut from the periodic box: bonds through the opened faces are dropped. Writes one dem-bend document a state, with "
+    "the curve of deflection (m, lower face under the load against the bar above its supports), punch travel (m) and force (N) over "
+    "all cycles.";
+
+constexpr const char* footer =
+    "Static: bonds are springs, particles touch the cylinders by Hertz's law and part from them freely; there is no friction.\n"
+    "Bond laws: series, bond and truncated spheres; neck, the bond alone between rigid spheres; centre, a cylinder from centre to "
+    "centre.\n"
+    "Examples:\n"
+    "  bondify sintered.kiln | bend | analyze modulus\n"
+    "  bend --span 8um --punch-radius 2um --max-force 60uN --states bent.kiln bonded.kiln -o bend.json\n"
+    "  for law in series neck centre; do bend --bond-law $law bonded.kiln; done | analyze modulus --table";
+
+template <typename Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& target, const std::map<std::string, Value>& choices,
+                        const std::string& default_text, const std::string& help) {
+    return app
+        .add_option_function<std::string>(name, [&target, choices](const std::string& text) { target = choices.at(text); }, help)
+        ->check(CLI::IsMember(choices))
+        ->default_str(default_text);
+}
+
+}  // namespace
+
+void Options::add_to(CLI::App& app) {
+    using cli::Dimension;
+    app.description(description);
+    app.footer(footer);
+    cli::add_quantity(app, "--span", span, Dimension::length, "distance between the supports", "0.8 of the bar's length");
+    cli::add_quantity(app, "--punch-radius", punch_radius, Dimension::length, "radius of the three cylinders",
+                      "0.75 of the bar's height");
+    auto* deflection = cli::add_quantity(app, "--max-deflection", max_deflection, Dimension::length,
+                                         "deflection at which unloading begins", "0.001 of the bar's height");
+    cli::add_quantity(app, "--max-force", max_force, Dimension::force, "force at which unloading begins, instead")
+        ->excludes(deflection);
+    app.add_option("--cycles", cycles, "times that the bar is loaded and unloaded")->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--points", points, "points of the curve in each branch, at equal steps of force")
+        ->check(CLI::Range(3, 1000))
+        ->capture_default_str();
+    add_choice(app, "--bond-law", model.law,
+               {{"series", physics::BondLaw::series}, {"neck", physics::BondLaw::neck}, {"centre", physics::BondLaw::centre}},
+               "series", "what is elastic between two centres");
+    add_choice(app, "--bond-shear", model.shear,
+               {{"section", physics::BondShear::section}, {"timoshenko", physics::BondShear::timoshenko}}, "section",
+               "what yields to a transverse force: the sections' shear, or Timoshenko's beam");
+    app.add_option("--tolerance", tolerance, "unbalanced force over contact force at which an equilibrium is reached (plain number)")
+        ->check(CLI::Range(1e-14, 1e-2))
+        ->default_str("1e-8");
+    app.add_option("--states", states, "also write the bar bent by the greatest force, with the forces in its bonds, to this file")
+        ->type_name("FILE");
+    app.callback([this, &app] {
+        const std::pair<const char*, double> quantities[] = {
+            {"--span", span}, {"--punch-radius", punch_radius}, {"--max-deflection", max_deflection}, {"--max-force", max_force}};
+        for (const auto& [name, value] : quantities) {
+            if (app.count(name) > 0 && !(value > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
+        }
+    });
+}
+
+}  // namespace kiln::bend

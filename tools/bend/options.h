@@ -1,0 +1,26 @@
+// options.h: what the user can choose about the bending test.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "mechanics/bond_network.h"
+
+namespace kiln::bend {
+
+/// Lengths and forces that are zero stand for the default that --help states.
+struct Options {
+    double span = 0.0;            // m
+    double punch_radius = 0.0;    // m
+    double max_deflection = 0.0;  // m
+    double max_force = 0.0;       // N
+    int cycles = 3;
+    int points = 6;  // of a branch
+    double tolerance = 1e-8;
+    mechanics::BondModel model;
+    std::string states;  // file of the deformed states; empty for none
+
+    void add_to(CLI::App& app);
+};
+
+}  // namespace kiln::bend

@@ -1,0 +1,97 @@
+// report.cpp: results of a bending test as JSON and as a state.
+#include "tools/bend/report.h"
+
+#include "io/state_io.h"
+
+namespace kiln::bend {
+
+namespace {
+
+NamedArray vectors(const std::string& name, const std::vector<Vec3>& rows) {
+    std::vector<double> data;
+    for (const Vec3& row : rows) data.insert(data.end(), row.begin(), row.end());
+    return {name, {{rows.size(), 3}, std::move(data)}};
+}
+
+/// Replaces an array of the same name, which a state that was bent before may have.
+void put(std::vector<NamedArray>& arrays, NamedArray array) {
+    std::erase_if(arrays, [&](const NamedArray& other) { return other.name == array.name; });
+    arrays.push_back(std::move(array));
+}
+
+}  // namespace
+
+Json summary(const Result& result) {
+    const mechanics::BondedBody& body = result.specimen.body;
+    return {{"dropped_bonds", result.specimen.dropped_bonds},
+            {"negligible_bonds", body.negligible_bonds},
+            {"fragments", body.fragments},
+            {"fragment_particles", body.fragment_particles},
+            {"rattlers", body.rattlers},
+            {"contacts", result.contacts},
+            {"converged", result.converged}};
+}
+
+Json document(const Result& result, const Options& options, Json history) {
+    const Specimen& specimen = result.specimen;
+    Json json{{"format", "dem-bend"},
+              {"version", io::format_version},
+              {"units", "SI"},
+              {"relative_density", specimen.relative_density},
+              {"span", result.fixture.span},
+              {"width", specimen.size[1]},
+              {"height", specimen.size[2]},
+              {"length", specimen.size[0]},
+              {"punch_radius", result.fixture.radius},
+              {"bond_law", physics::name_of(options.model.law)},
+              {"bond_shear", physics::name_of(options.model.shear)},
+              {"method", "static"},
+              {"young_modulus", specimen.young_modulus},
+              {"poisson_ratio", specimen.poisson_ratio},
+              {"particles", specimen.body.particle.size()},
+              {"bonds", specimen.body.bond.size()}};
+    Json deflection = Json::array(), punch = Json::array(), force = Json::array();
+    for (const Point& point : result.curve) {
+        deflection.push_back(point.deflection);
+        punch.push_back(point.punch);
+        force.push_back(point.force);
+    }
+    json["curve"] = {{"deflection", deflection}, {"punch", punch}, {"force", force}};
+    json["iterations"] = result.iterations;
+    json["residual"] = result.residual;
+    json["energy"] = {{"bonds", result.peak.bond_energy}, {"contacts", result.peak.contact_energy}, {"error", result.energy_error}};
+    json.update(summary(result));
+    json["history"] = std::move(history);
+    return json;
+}
+
+State bent_state(const Result& result, Json history) {
+    const mechanics::BondedBody& body = result.specimen.body;
+    const mechanics::BondNetwork& network = body.network;
+    State state = result.specimen.state;
+    state.particles = take_rows(state.particles, body.particle);
+    state.bonds = take_rows(*state.bonds, body.bond);
+    state.bonds->pair = network.pair;
+    std::vector<Vec3> displacement, rotation, force, moment;
+    for (std::size_t node = 0; node < network.nodes(); ++node) {
+        const mechanics::Vec6& freedoms = result.peak.displacement[node];
+        displacement.emplace_back(freedoms.head<3>());
+        rotation.emplace_back(freedoms.tail<3>() / network.rotation_length);
+        state.particles.position[node] += displacement.back();
+    }
+    std::vector<double> tension;
+    for (const mechanics::BondLoad& load : mechanics::bond_loads(network, result.peak.displacement)) {
+        force.push_back(load.force);
+        moment.push_back(load.moment);
+        tension.push_back(load.tension);
+    }
+    put(state.particles.other, vectors("displacement", displacement));
+    put(state.particles.other, vectors("rotation", rotation));
+    put(state.bonds->other, vectors("force", force));
+    put(state.bonds->other, {"normal_force", {{tension.size()}, std::move(tension)}});
+    put(state.bonds->other, vectors("moment", moment));
+    state.history = std::move(history);
+    return state;
+}
+
+}  // namespace kiln::bend

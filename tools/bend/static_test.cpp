@@ -1,0 +1,131 @@
+// static_test.cpp: force levels of the static test, each solved once, and the cycles made of them.
+#include "tools/bend/static_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/bending.h"
+
+namespace kiln::bend {
+
+namespace {
+
+constexpr double default_deflection = 1e-3;  // of the height
+constexpr double seating_force = 1e-9;       // of the greatest force: where the punch's travel is zero
+constexpr double deflection_tolerance = 1e-6;
+constexpr int most_trials = 12;
+
+struct Level {
+    Point point;
+    double compliance, energy;  // m/N, J
+};
+
+/// The equilibria of one test.
+class Levels {
+   public:
+    Levels(const Specimen& specimen, const Fixture& fixture, double tolerance)
+        : solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
+          problem_(specimen.body.network, solver_, find_contacts(specimen, fixture)),
+          gauge_(specimen, fixture),
+          tolerance_(tolerance) {}
+
+    void seat(double force) { seat_ = problem_.seat(force); }
+
+    Level at(double force, Result& result) {
+        last_ = problem_.solve(force, tolerance_);
+        result.iterations += last_.iterations;
+        result.residual = std::max(result.residual, last_.residual);
+        result.converged = result.converged && last_.converged;
+        return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
+                last_.punch_compliance,
+                last_.bond_energy + last_.contact_energy};
+    }
+
+    mechanics::Equilibrium& last() { return last_; }
+
+   private:
+    mechanics::ElasticSolver solver_;
+    mechanics::ContactProblem problem_;
+    Gauge gauge_;
+    double tolerance_;
+    double seat_ = 0.0;
+    mechanics::Equilibrium last_;
+};
+
+/// Force that would give the deflection if the bar were as stiff as the solid's share of its volume, N.
+double estimated_force(const Specimen& specimen, const Fixture& fixture, double deflection) {
+    const double softness = physics::bending_modulus(1.0, fixture.span, specimen.size[1], specimen.size[2], specimen.poisson_ratio);
+    return specimen.relative_density * specimen.young_modulus * deflection / softness;
+}
+
+/// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
+Level peak_level(Levels& levels, const Specimen& specimen, const Fixture& fixture, const Options& options, Result& result) {
+    if (options.max_force > 0.0) {
+        levels.seat(seating_force * options.max_force);
+        return levels.at(options.max_force, result);
+    }
+    const double wanted = options.max_deflection > 0.0 ? options.max_deflection : default_deflection * specimen.size[2];
+    double force = estimated_force(specimen, fixture, wanted);
+    levels.seat(seating_force * force);
+    Level level = levels.at(force, result);
+    Level before{};
+    for (int trial = 0; trial < most_trials; ++trial) {
+        const double missing = wanted - level.point.deflection;
+        if (std::abs(missing) <= deflection_tolerance * wanted) return level;
+        // Secant through the last two points; at first through the origin.
+        const double slope = (level.point.force - before.point.force) / (level.point.deflection - before.point.deflection);
+        force = level.point.force + slope * missing;
+        if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the wanted deflection");
+        before = level;
+        level = levels.at(force, result);
+    }
+    throw Error("no punch force was found that gives the wanted deflection");
+}
+
+/// Work of the punch from the first level to the last, J. Travel is a cubic between forces (Hermite), from its values and slopes.
+double work(const std::vector<Level>& levels) {
+    double sum = levels.back().point.force * levels.back().point.punch - levels.front().point.force * levels.front().point.punch;
+    for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+        const Level& a = levels[k];
+        const Level& b = levels[k + 1];
+        const double step = b.point.force - a.point.force;
+        sum -= step * (a.point.punch + b.point.punch) / 2.0 + step * step / 12.0 * (a.compliance - b.compliance);
+    }
+    return sum;
+}
+
+/// The curve of all cycles: elastic, so that unloading retraces loading.
+std::vector<Point> cycled(const std::vector<Level>& levels, int cycles) {
+    std::vector<Point> curve{{0.0, 0.0, 0.0}};
+    for (int cycle = 0; cycle < cycles; ++cycle) {
+        for (const Level& level : levels) curve.push_back(level.point);
+        for (std::size_t k = levels.size() - 1; k > 0; --k) curve.push_back(levels[k - 1].point);
+        curve.push_back({0.0, 0.0, 0.0});
+    }
+    return curve;
+}
+
+}  // namespace
+
+Result bend_static(State state, const Options& options, const Watch& watch) {
+    Result result;
+    result.specimen = cut_specimen(std::move(state), options.model);
+    result.fixture = place_fixture(result.specimen, options);
+    Levels equilibria(result.specimen, result.fixture, options.tolerance);
+    std::vector<Level> levels{peak_level(equilibria, result.specimen, result.fixture, options, result)};
+    result.peak = std::move(equilibria.last());
+    result.contacts = static_cast<std::size_t>(
+        std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(), [](double force) { return force > 0.0; }));
+    const double greatest = levels.back().point.force;
+    for (int point = options.points - 1; point > 0; --point) {
+        if (!watch(1.0 - static_cast<double>(point) / options.points)) return result;
+        levels.push_back(equilibria.at(greatest * point / options.points, result));
+    }
+    std::reverse(levels.begin(), levels.end());
+    const double stored = levels.back().energy - levels.front().energy;
+    result.energy_error = std::abs(work(levels) - stored) / stored;
+    result.curve = cycled(levels, options.cycles);
+    return result;
+}
+
+}  // namespace kiln::bend
