@@ -6,9 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <climits>
-#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "io/state_io.h"
 
@@ -16,18 +15,22 @@ namespace kiln::io {
 
 namespace {
 
-std::string system_cause() { return std::strerror(errno); }
-
-/// The file behind a chain of symbolic links, so that a rename replaces the file and not the link.
-std::string resolved(const std::string& name) {
-    char* path = realpath(name.c_str(), nullptr);
-    if (!path) return name;
-    std::string result = path;
-    std::free(path);
-    return result;
+/// The file behind a chain of symbolic links, there or not, so that a rename replaces the file and not the link.
+std::filesystem::path resolved(std::filesystem::path path) {
+    constexpr int longest_chain = 40;  // as in Linux
+    std::error_code none;
+    for (int link = 0; link < longest_chain && std::filesystem::is_symlink(path, none); ++link)
+        path = path.parent_path() / std::filesystem::read_symlink(path);
+    return path;
 }
 
 }  // namespace
+
+void throw_system_error(const std::string& sentence) {
+    if (errno == EPIPE) throw ClosedPipe();
+    if (errno == EINTR) throw Interrupted();
+    throw Error(sentence + ": " + std::strerror(errno));
+}
 
 Input::Input(std::vector<std::string> files) : files_(std::move(files)) {
     if (files_.empty()) files_.push_back("-");
@@ -51,8 +54,8 @@ std::optional<Document> Input::next() {
         const std::string& name = files_[opened_++];
         reader_.reset();
         if (file_ && file_ != stdin) std::fclose(file_);
-        file_ = name == "-" ? stdin : std::fopen(name.c_str(), "rb");
-        if (!file_) throw Error(name + ": cannot be opened: " + system_cause());
+        file_ = name == "-" ? stdin : std::fopen(name.c_str(), "rbe");
+        if (!file_) throw_system_error(name + ": cannot be opened");
         reader_ = std::make_unique<DocumentReader>(file_, name == "-" ? "standard input" : name);
     }
 }
@@ -64,26 +67,40 @@ std::optional<State> Input::next_state() {
 }
 
 Output::Output(std::string name, bool text) : name_(std::move(name)), text_(text) {
+    if (name_.empty()) throw Error("the output has an empty name");
     if (name_ == "-") {
-        if (!text_ && isatty(STDOUT_FILENO)) throw Error("binary documents do not go to a terminal; use -o FILE, a pipe, or --text");
+        if (!text_ && isatty(STDOUT_FILENO))
+            throw Error("binary documents do not go to a terminal; use -o FILE, a pipe, or --text");
         name_ = "standard output";
         file_ = stdout;
         return;
     }
-    name_ = resolved(name_);
     struct stat status {};
-    if (stat(name_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {  // a device or a pipe has no whole to wait for
-        file_ = std::fopen(name_.c_str(), "wb");
-    } else {
-        partial_ = name_ + ".partial-" + std::to_string(getpid());
-        file_ = std::fopen(partial_.c_str(), "wb");
+    const bool exists = stat(name_.c_str(), &status) == 0;
+    if (exists && !S_ISREG(status.st_mode)) {  // a device or a pipe has no whole to wait for
+        file_ = std::fopen(name_.c_str(), "wbe");
+        if (!file_) fail();
+        return;
     }
-    if (!file_) {
-        const std::string cause = system_cause();
+    if (exists && access(name_.c_str(), W_OK) != 0) fail();
+    final_ = resolved(name_);
+    create_partial();
+    if (exists) fchmod(fileno(file_), status.st_mode & 0777);
+}
+
+/// A fresh file beside the final one. Another program, or another output of this one, may be writing the same file.
+void Output::create_partial() {
+    const std::string base = final_ + ".partial-" + std::to_string(getpid());
+    for (int number = 0; !file_; ++number) {
+        partial_ = number == 0 ? base : base + "-" + std::to_string(number);
+        file_ = std::fopen(partial_.c_str(), "wbxe");
+        if (file_ || errno == EEXIST) continue;
         partial_.clear();
-        throw Error(name_ + ": cannot be written: " + cause);
+        fail();
     }
 }
+
+void Output::fail() const { throw_system_error(name_ + ": cannot be written"); }
 
 Output::~Output() {
     if (file_ && file_ != stdout) std::fclose(file_);
@@ -92,10 +109,7 @@ Output::~Output() {
 
 void Output::write(const Document& document) {
     write_document(file_, name_, document, text_);
-    if (partial_.empty() && std::fflush(file_) != 0) {  // the next program of a pipe starts as soon as it can
-        if (errno == EPIPE) throw ClosedPipe();
-        throw Error(name_ + ": cannot be written: " + system_cause());
-    }
+    if (partial_.empty() && std::fflush(file_) != 0) fail();  // the next program of a pipe starts as soon as it can
 }
 
 void Output::write(State state) { write(document_from(std::move(state))); }
@@ -107,9 +121,7 @@ void Output::write(const Json& line) {
 }
 
 void Output::write_text(const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_) == text.size()) return;
-    if (errno == EPIPE) throw ClosedPipe();
-    throw Error(name_ + ": cannot be written: " + system_cause());
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
 }
 
 void Output::commit() {
@@ -120,11 +132,11 @@ void Output::commit() {
     file_ = nullptr;
     if (!flushed || !closed) {
         if (!flushed) errno = cause;
-        if (errno == EPIPE) throw ClosedPipe();
-        throw Error(name_ + ": cannot be written: " + system_cause());
+        fail();
     }
     if (partial_.empty()) return;
-    if (std::rename(partial_.c_str(), name_.c_str()) != 0) throw Error(name_ + ": cannot be renamed into place: " + system_cause());
+    if (std::rename(partial_.c_str(), final_.c_str()) != 0)
+        throw_system_error(name_ + ": cannot be renamed into place");
     partial_.clear();
 }
 

@@ -15,13 +15,20 @@ namespace kiln::io {
 /// The reader of the stream went away; the tool ends silently.
 struct ClosedPipe : std::exception {};
 
+/// A signal broke off a wait for input or for room in a pipe.
+struct Interrupted : std::exception {};
+
+/// Turns errno into ClosedPipe, Interrupted, or Error "<sentence>: <cause>".
+[[noreturn]] void throw_system_error(const std::string& sentence);
+
 /// The documents of several files, one after the other; no file, or "-", is stdin.
 class Input {
    public:
     explicit Input(std::vector<std::string> files);
     ~Input();
 
-    /// Next document; nothing at the end. Throws Error for a file that cannot be opened or read, or if there was no document at all.
+    /// Next document; nothing at the end. Throws Error for a file that cannot be opened or read, or if there was no document at
+    /// all.
     std::optional<Document> next();
 
     /// Next document as a state; throws Error where it is another kind of document.
@@ -35,7 +42,9 @@ class Input {
     std::unique_ptr<DocumentReader> reader_;
 };
 
-/// An output file or stdout ("-"). A file is written beside its final name and renamed by commit(); without commit() nothing appears.
+/// An output file or stdout ("-"). A file is written beside its final name and renamed by commit(); without commit() nothing
+/// appears and a file of that name stays as it was. Symbolic links and permissions are kept. Devices and named pipes are written
+/// as they are.
 class Output {
    public:
     /// Throws Error if the file cannot be created, or if binary documents would go to a terminal.
@@ -54,8 +63,12 @@ class Output {
     void commit();
 
    private:
-    std::string name_;
-    std::string partial_;  // the file being written
+    [[noreturn]] void fail() const;
+    void create_partial();
+
+    std::string name_;     // as it was given
+    std::string final_;    // the regular file that it leads to; empty for a device, a pipe or standard output
+    std::string partial_;  // the file being written, until it has its final name
     bool text_;
     std::FILE* file_ = nullptr;
 };
