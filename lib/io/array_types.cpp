@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "io/json_line.h"
+
 namespace kiln::io {
 
 namespace {
@@ -32,6 +34,8 @@ bool set_type(Array& array, const std::string& name) {
 }
 
 std::string type_name(const Array& array) { return names[array.data.index()]; }
+
+std::string shape_text(const std::vector<std::size_t>& shape) { return shown(Json(shape)); }
 
 std::string known_types() {
     std::string list;

@@ -13,6 +13,9 @@ bool set_type(Array& array, const std::string& name);
 /// Type name of an array.
 std::string type_name(const Array& array);
 
+/// "[6000,3]", for messages; cut where it is long.
+std::string shape_text(const std::vector<std::size_t>& shape);
+
 /// "f8, f4, …" for messages.
 std::string known_types();
 

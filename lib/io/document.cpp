@@ -6,41 +6,22 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <set>
+#include <memory>
 
 #include "io/array_types.h"
+#include "io/files.h"
+#include "io/json_line.h"
 
 namespace kiln::io {
 
 namespace {
 
-constexpr std::size_t stream_buffer = 1 << 20;   // bytes
-constexpr std::size_t first_chunk = 1 << 24;     // bytes of an array taken before its arrival is seen
-constexpr std::size_t largest_row_count = std::size_t{1} << 31;
+constexpr std::size_t first_chunk = 1 << 20;                     // bytes of an array taken before its arrival is seen
+constexpr std::size_t largest_size = std::size_t{1} << 31;       // rows are counted by i4
+constexpr std::uint64_t unknown_length = std::numeric_limits<std::uint64_t>::max();
 
 [[noreturn]] void fail(const std::string& place, const std::string& cause) { throw Error(place + ": " + cause); }
-
-/// JSON of one line; a repeated key would hide a value, so it is an error.
-Json parse_line(const std::string& line, const std::string& place) {
-    std::vector<std::set<std::string>> keys;
-    const auto watch = [&](int, nlohmann::detail::parse_event_t event, Json& value) {
-        using Event = nlohmann::detail::parse_event_t;
-        if (event == Event::object_start) keys.emplace_back();
-        if (event == Event::object_end) keys.pop_back();
-        if (event == Event::key && !keys.back().insert(value.get<std::string>()).second)
-            fail(place, "key '" + value.get<std::string>() + "' stands twice");
-        return true;
-    };
-    try {
-        return Json::parse(line, watch);
-    } catch (const Json::exception& error) {
-        fail(place, "is not a line of JSON (byte " + std::to_string(dynamic_cast<const Json::parse_error*>(&error)
-                                                                        ? dynamic_cast<const Json::parse_error&>(error).byte
-                                                                        : 0) + ")");
-    }
-}
 
 std::vector<std::size_t> shape_from(const Json& spec, const std::string& where) {
     if (!spec.contains("shape") || !spec["shape"].is_array() || spec["shape"].empty())
@@ -48,11 +29,11 @@ std::vector<std::size_t> shape_from(const Json& spec, const std::string& where) 
     std::vector<std::size_t> shape;
     std::size_t values = 1;
     for (const Json& size : spec["shape"]) {
-        if (!size.is_number_integer() || size.get<std::int64_t>() < 0 || size.get<std::uint64_t>() >= largest_row_count)
-            fail(where, "shape " + spec["shape"].dump() + " is not a list of sizes");
+        if (!size.is_number_integer() || size.get<std::int64_t>() < 0 || size.get<std::uint64_t>() >= largest_size)
+            fail(where, "shape " + shown(spec["shape"]) + " is not a list of sizes");
         shape.push_back(size.get<std::size_t>());
         if (__builtin_mul_overflow(values, shape.back(), &values) || values > std::numeric_limits<std::int64_t>::max() / 8)
-            fail(where, "shape " + spec["shape"].dump() + " is larger than any memory");
+            fail(where, "shape " + shown(spec["shape"]) + " is larger than any memory");
     }
     return shape;
 }
@@ -63,13 +44,18 @@ std::size_t value_count(const std::vector<std::size_t>& shape) {
     return values;
 }
 
+std::size_t value_width(const Array& array) {
+    return std::visit([](const auto& values) { return sizeof(values[0]); }, array.data);
+}
+
 template <typename Value>
 Value value_from(const Json& item, const std::string& where, std::size_t index) {
     const auto refuse = [&](const std::string& wanted) -> void {
-        fail(where, "value " + std::to_string(index) + " is " + item.dump() + " where " + wanted + " is needed");
+        fail(where, "value " + std::to_string(index) + " is " + shown(item) + " where " + wanted + " is needed");
     };
     if constexpr (std::is_floating_point_v<Value>) {
         if (!item.is_number()) refuse("a number");
+        if (std::abs(item.get<double>()) > std::numeric_limits<Value>::max()) refuse("a number that fits the array's type");
         return item.get<Value>();
     } else {
         if (!item.is_number_integer()) refuse("a whole number");
@@ -97,11 +83,11 @@ void read_text_data(Array& array, const Json& data, const std::string& where) {
         array.data);
 }
 
-/// Bytes from here to the end of a regular file; the largest number for pipes.
+/// Bytes from here to the end of a regular file; nobody knows for a pipe.
 std::uint64_t bytes_left(std::FILE* file) {
     struct stat status {};
     const long here = std::ftell(file);
-    if (here < 0 || fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) return std::numeric_limits<std::uint64_t>::max();
+    if (here < 0 || fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) return unknown_length;
     return static_cast<std::uint64_t>(std::max<off_t>(0, status.st_size - here));
 }
 
@@ -112,18 +98,67 @@ struct Slot {
     Array* array;
 };
 
+/// The bytes behind a header, read from front to back.
+class Payload {
+   public:
+    /// Throws Error at once where a file is shorter than that.
+    Payload(std::FILE* file, const std::string& place, std::uint64_t bytes)
+        : file_(file), place_(place), bytes_(bytes), left_(bytes_left(file)) {
+        if (bytes_ > left_) truncated(left_);
+    }
+
+    void skip_to(std::uint64_t target) {
+        std::array<char, 4096> scrap;
+        while (position_ < target) take(scrap.data(), std::min<std::uint64_t>(scrap.size(), target - position_));
+    }
+
+    /// Fills the array. Of a pipe no more memory is taken at a time than bytes have arrived already.
+    void read(const Slot& slot) {
+        if (slot.at < position_) fail(slot.where, "overlaps another array");
+        skip_to(slot.at);
+        const std::size_t values = value_count(slot.array->shape);
+        const auto fill = [&](auto& data) {
+            constexpr std::size_t width = sizeof(data[0]);
+            for (std::size_t done = 0; done < values;) {
+                const std::size_t chunk = left_ == unknown_length ? std::max(first_chunk / width, done) : values;
+                data.resize(std::min(values, done + chunk));
+                take(data.data() + done, (data.size() - done) * width);
+                done = data.size();
+            }
+        };
+        std::visit(fill, slot.array->data);
+    }
+
+   private:
+    void take(void* target, std::size_t count) {
+        const std::size_t got = std::fread(target, 1, count, file_);
+        position_ += got;
+        if (got == count) return;
+        if (std::ferror(file_)) throw_system_error(place_ + ": cannot be read");
+        truncated(position_);
+    }
+
+    [[noreturn]] void truncated(std::uint64_t there) const {
+        fail(place_, "is truncated: " + std::to_string(bytes_) + " bytes belong behind its header, " + std::to_string(there) +
+                         " are there");
+    }
+
+    std::FILE* file_;
+    const std::string& place_;
+    std::uint64_t bytes_, left_, position_ = 0;
+};
+
 /// Arrays of one group ("particles" or "bonds"): text data is read, payload arrays are noted in slots.
 void read_group(const Json& group, const std::string& name, const std::string& place, std::vector<NamedArray>& arrays,
                 std::vector<Slot>& slots) {
-    if (!group.is_object()) fail(place, name + " is not an object of arrays");
     arrays.reserve(group.size());
     for (const auto& [key, spec] : group.items()) {
-        const std::string where = place + ": " + name + "." + key;
+        const std::string where = place + ": " + name + "." + clipped(key);
         if (!spec.is_object() || !spec.contains("type") || !spec["type"].is_string())
             fail(where, "is not an array {\"type\":…,\"shape\":…,\"data\" or \"at\":…}");
         NamedArray& named = arrays.emplace_back(NamedArray{key, {shape_from(spec, where), {}}});
         if (!set_type(named.array, spec["type"].get<std::string>()))
-            fail(where, "type '" + spec["type"].get<std::string>() + "' is unknown; there are " + known_types());
+            fail(where, "type " + shown(spec["type"]) + " is unknown; there are " + known_types());
         if (spec.contains("data") == spec.contains("at")) fail(where, "needs either data or at");
         if (spec.contains("data")) {
             read_text_data(named.array, spec["data"], where);
@@ -136,90 +171,80 @@ void read_group(const Json& group, const std::string& name, const std::string& p
 
 }  // namespace
 
-DocumentReader::DocumentReader(std::FILE* file, std::string name) : file_(file), name_(std::move(name)), buffer_(stream_buffer) {
-    std::setvbuf(file_, buffer_.data(), _IOFBF, buffer_.size());
+DocumentReader::DocumentReader(std::FILE* file, std::string name) : file_(file), name_(std::move(name)) {}
+
+void DocumentReader::check_readable() const {
+    if (std::ferror(file_)) throw_system_error(name_ + ": cannot be read");
 }
 
-bool DocumentReader::read_line(std::string& line) {
-    line.clear();
+/// Moves to the first byte of the next document; false at the end of the stream.
+bool DocumentReader::find_document() {
+    int first = std::getc(file_);
+    while (first == ' ' || first == '\t' || first == '\r' || first == '\n') first = std::getc(file_);
+    check_readable();
+    if (first == EOF) return false;
+    std::ungetc(first, file_);
+    return true;
+}
+
+Json DocumentReader::read_header(const std::string& place) {
+    const int first = std::getc(file_);  // looked at before a line is read: what is no stream at all may hold no line end either
+    if (first != '{') fail(place, "begins with byte " + std::to_string(first) + ", wanted '{', the beginning of a JSON object");
+    std::ungetc(first, file_);
     char* text = nullptr;
     std::size_t capacity = 0;
-    errno = 0;
     const ssize_t length = getline(&text, &capacity, file_);
-    if (length > 0) line.assign(text, static_cast<std::size_t>(length));
-    std::free(text);
-    if (std::ferror(file_)) fail(name_, std::string("cannot be read: ") + std::strerror(errno));
-    return length > 0;
+    const std::unique_ptr<char, decltype(&std::free)> owner(text, &std::free);
+    check_readable();
+    if (length <= 0) throw std::bad_alloc();
+    const std::string_view line(text, static_cast<std::size_t>(length));
+    const std::size_t last = line.find_last_not_of(" \t\r\n");
+    const bool whole = line.back() == '\n';
+    if (!whole && line[last] != '}')
+        fail(place, "is truncated: it ends inside its header, after " + std::to_string(length) + " bytes");
+    Json header = parse_line(line, place);
+    if (!whole && header.contains("bytes")) fail(place, "is truncated: it ends with its header, but bytes belong behind it");
+    return header;
 }
 
 bool DocumentReader::next(Document& document) {
     document = {};
-    std::string line;
-    do {
-        if (!read_line(line)) return false;
-    } while (line.find_first_not_of(" \t\r\n") == std::string::npos);
+    errno = 0;
+    if (!find_document()) return false;
     document.place = name_ + ", document " + std::to_string(++number_);
-    document.header = parse_line(line, document.place);
-    if (!document.header.is_object()) fail(document.place, "is not a JSON object");
+    document.header = read_header(document.place);
 
     std::uint64_t bytes = 0;
     if (document.header.contains("bytes")) {
-        if (!document.header["bytes"].is_number_unsigned()) fail(document.place, "bytes is not a number of bytes");
-        bytes = document.header["bytes"].get<std::uint64_t>();
-        if (line.back() != '\n') fail(document.place, "ends inside its header");
+        const Json& size = document.header["bytes"];
+        if (!size.is_number_unsigned()) fail(document.place, "bytes is " + shown(size) + ", not a number of bytes");
+        bytes = size.get<std::uint64_t>();
+        document.header.erase("bytes");
     }
-    read_payload(document, bytes);
-    for (const char* key : {"particles", "bonds", "bytes"}) document.header.erase(key);
+    read_arrays(document, bytes);
     return true;
 }
 
-void DocumentReader::read_payload(Document& document, std::uint64_t bytes) {
+void DocumentReader::read_arrays(Document& document, std::uint64_t bytes) {
     std::vector<Slot> slots;
     const auto group = [&](const char* name, std::vector<NamedArray>& arrays) {
-        if (!document.header.contains(name)) return false;
+        if (!document.header.contains(name) || !document.header[name].is_object()) return false;
         read_group(document.header[name], name, document.place, arrays, slots);
+        document.header.erase(name);
         return true;
     };
     group("particles", document.particles);
     document.has_bonds = group("bonds", document.bonds);
-
-    const std::uint64_t available = bytes_left(file_);
-    const auto truncated = [&](std::uint64_t there) {
-        fail(document.place, "is truncated: " + std::to_string(bytes) + " bytes belong behind its header, " + std::to_string(there) +
-                                 " are there");
-    };
-    if (bytes > available) truncated(available);
-
-    std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) { return a.at < b.at; });
-    std::uint64_t position = 0;
-    const auto take = [&](char* target, std::size_t count) {
-        const std::size_t got = std::fread(target, 1, count, file_);
-        position += got;
-        if (got < count) truncated(position);
-    };
-    const auto skip_to = [&](std::uint64_t target) {
-        std::array<char, 4096> scrap{};
-        while (position < target) take(scrap.data(), static_cast<std::size_t>(std::min<std::uint64_t>(scrap.size(), target - position)));
-    };
     for (const Slot& slot : slots) {
-        const std::size_t values = value_count(slot.array->shape);
-        std::visit(
-            [&](auto& data) {
-                constexpr std::size_t width = sizeof(data[0]);
-                if (slot.at > bytes || values > (bytes - slot.at) / width)
-                    fail(slot.where, "reaches beyond the " + std::to_string(bytes) + " bytes of the document");
-                if (slot.at < position && values > 0) fail(slot.where, "overlaps another array");
-                if (values > 0) skip_to(slot.at);
-                for (std::size_t done = 0; done < values;) {
-                    const std::size_t chunk = std::min(values - done, std::max(first_chunk / width, done));
-                    data.resize(done + chunk);
-                    take(reinterpret_cast<char*>(data.data() + done), chunk * width);
-                    done += chunk;
-                }
-            },
-            slot.array->data);
+        const std::uint64_t width = value_width(*slot.array);
+        if (slot.at > bytes || value_count(slot.array->shape) > (bytes - slot.at) / width)
+            fail(slot.where, "reaches beyond the " + std::to_string(bytes) + " bytes of the document");
     }
-    skip_to(bytes);
+    std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) { return a.at < b.at; });
+    Payload payload(file_, document.place, bytes);
+    for (const Slot& slot : slots)
+        if (value_count(slot.array->shape) > 0) payload.read(slot);
+    payload.skip_to(bytes);
 }
 
 }  // namespace kiln::io

@@ -26,22 +26,26 @@ class DocumentReader {
     DocumentReader(std::FILE* file, std::string name);
 
     /// Fills the next document; false at the end of the stream.
-    /// Throws Error that names the file, the document and what was wanted: truncation, bad JSON, a repeated key, unknown array type,
-    /// shape or size that disagree, a payload longer than the file. Memory taken never runs ahead of the bytes that have arrived.
+    /// Throws Error that names the file, the document and what was wanted: truncation, bad JSON, a repeated key, unknown array
+    /// type, shape or size that disagree, a payload longer than the file. Memory taken never runs ahead of the bytes that have
+    /// arrived.
+    /// "particles" or "bonds" that are no objects stay in the header: only a dem-state says that they must be arrays.
     bool next(Document& document);
 
    private:
-    bool read_line(std::string& line);
-    void read_payload(Document& document, std::uint64_t bytes);
+    void check_readable() const;
+    bool find_document();
+    Json read_header(const std::string& place);
+    void read_arrays(Document& document, std::uint64_t bytes);
 
     std::FILE* file_;
     std::string name_;
     std::size_t number_ = 0;
-    std::vector<char> buffer_;
 };
 
-/// Writes the document to the file: as one text line, or with binary arrays behind the header.
-/// Throws Error where a number cannot be held by text (NaN, infinity) or the file takes no more.
+/// Writes the document to the file: as one text line, or with binary arrays behind the header, each at a multiple of 64 bytes.
+/// Throws Error that starts with name: a number that JSON cannot hold (NaN, infinity), a header key that belongs to the arrays, or
+/// a file that takes no more. Throws ClosedPipe or Interrupted (files.h) where the reader of a pipe went away or a signal came.
 void write_document(std::FILE* file, const std::string& name, const Document& document, bool text);
 
 }  // namespace kiln::io

@@ -1,6 +1,7 @@
 // material_io.cpp: materials and pairs of materials in a document's header.
 #include <cmath>
 
+#include "io/json_line.h"
 #include "io/state_io.h"
 
 namespace kiln::io {
@@ -28,9 +29,22 @@ constexpr const char* diffusion_key = "grain_boundary_diffusion";
 
 }  // namespace
 
+void put_back(Json& target, const Json& carried) {
+    if (target.is_object() && carried.is_object()) {
+        for (const auto& [key, value] : carried.items()) {
+            if (target.contains(key))
+                put_back(target[key], value);
+            else
+                target[key] = value;
+        }
+    } else if (target.is_array() && carried.is_array() && target.size() == carried.size()) {
+        for (std::size_t index = 0; index < target.size(); ++index) put_back(target[index], carried[index]);
+    }
+}
+
 double number_from(const Json& json, const std::string& where, double lowest) {
-    if (!json.is_number() || !std::isfinite(json.get<double>())) throw Error(where + " is " + json.dump() + ", not a number");
-    if (json.get<double>() < lowest) throw Error(where + " is " + json.dump() + ", below " + Json(lowest).dump());
+    if (!json.is_number() || !std::isfinite(json.get<double>())) throw Error(where + " is " + shown(json) + ", not a number");
+    if (json.get<double>() < lowest) throw Error(where + " is " + shown(json) + ", below " + shown(lowest));
     return json.get<double>();
 }
 
@@ -39,7 +53,7 @@ Material material_from(const Json& json, const std::string& place) {
         throw Error(place + ": a material is an object with a name");
     Material material;
     material.name = json["name"].get<std::string>();
-    const std::string where = place + ": material '" + material.name + "': ";
+    const std::string where = place + ": material '" + clipped(material.name) + "': ";
     material.other = json;
     material.other.erase("name");
     for (const Field& field : fields) {
@@ -53,7 +67,10 @@ Material material_from(const Json& json, const std::string& place) {
             throw Error(where + diffusion_key + " needs prefactor and activation_energy");
         material.diffusion_prefactor = number_from(diffusion["prefactor"], where + "prefactor", 0.0);
         material.activation_energy = number_from(diffusion["activation_energy"], where + "activation_energy", 0.0);
-        material.other.erase(diffusion_key);
+        Json& carried = material.other[diffusion_key];
+        carried.erase("prefactor");
+        carried.erase("activation_energy");
+        if (carried.empty()) material.other.erase(diffusion_key);
     }
     return material;
 }
@@ -64,7 +81,7 @@ Json material_json(const Material& material) {
         if (material.*field.member) json[field.key] = *(material.*field.member);
     if (material.diffusion_prefactor && material.activation_energy)
         json[diffusion_key] = {{"prefactor", *material.diffusion_prefactor}, {"activation_energy", *material.activation_energy}};
-    for (const auto& [key, value] : material.other.items()) json[key] = value;
+    put_back(json, material.other);
     return json;
 }
 
@@ -76,10 +93,10 @@ MaterialPair material_pair_from(const Json& json, const std::vector<Material>& m
         const Json& name = json["materials"][side];
         std::size_t row = 0;
         while (row < materials.size() && name != materials[row].name) ++row;
-        if (row == materials.size()) throw Error(place + ": contacts name an unknown material " + name.dump());
+        if (row == materials.size()) throw Error(place + ": contacts name an unknown material " + shown(name));
         pair.materials[side] = static_cast<std::int32_t>(row);
     }
-    const std::string where = place + ": contact of " + json["materials"].dump() + ": ";
+    const std::string where = place + ": contact of " + shown(json["materials"]) + ": ";
     const auto read = [&](const char* key, std::optional<double>& target) {
         if (json.contains(key)) target = number_from(json[key], where + key, 0.0);
     };
@@ -89,8 +106,8 @@ MaterialPair material_pair_from(const Json& json, const std::vector<Material>& m
 }
 
 Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials) {
-    Json json{{"materials",
-               {materials[static_cast<std::size_t>(pair.materials[0])].name, materials[static_cast<std::size_t>(pair.materials[1])].name}}};
+    const auto name = [&](std::int32_t row) { return materials[static_cast<std::size_t>(row)].name; };
+    Json json{{"materials", {name(pair.materials[0]), name(pair.materials[1])}}};
     if (pair.surface_energy) json["surface_energy"] = *pair.surface_energy;
     if (pair.diffusion_parameter) json["diffusion_parameter"] = *pair.diffusion_parameter;
     return json;

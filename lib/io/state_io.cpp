@@ -1,15 +1,14 @@
-// state_io.cpp: the rules of dem-state: which keys and arrays there are, their defaults, and what is refused.
+// state_io.cpp: a state from a document by the rules of dem-state: keys and arrays, their defaults, and what is refused.
 #include "io/state_io.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <unordered_set>
 
-#include "io/array_types.h"
+#include "io/column.h"
+#include "io/json_line.h"
 #include "physics/materials.h"
 
 namespace kiln::io {
@@ -27,48 +26,8 @@ std::optional<Array> extract(std::vector<NamedArray>& arrays, const std::string&
     return array;
 }
 
-/// Checks type and shape of a known array and gives its values, `width` in a row. rows: how many there must be.
-template <typename Value>
-std::vector<Value> values_of(Array&& array, const std::string& where, std::size_t rows, std::size_t width) {
-    auto* values = std::get_if<std::vector<Value>>(&array.data);
-    if (!values) {
-        Array wanted;
-        wanted.data = std::vector<Value>();
-        throw Error(where + " has type " + type_name(array) + ", wanted " + type_name(wanted));
-    }
-    const std::vector<std::size_t> shape = width == 1 ? std::vector<std::size_t>{rows} : std::vector<std::size_t>{rows, width};
-    if (array.shape != shape) throw Error(where + " has shape " + Json(array.shape).dump() + ", wanted " + Json(shape).dump());
-    if constexpr (std::is_floating_point_v<Value>)
-        for (std::size_t index = 0; index < values->size(); ++index)
-            if (!std::isfinite((*values)[index])) throw Error(where + ", row " + std::to_string(index / width) + ": is not a finite number");
-    return std::move(*values);
-}
-
-/// Values of a column whose row is a fixed-size type such as Vec3 or Image.
-template <typename Row, typename Value>
-std::vector<Row> rows_of(Array&& array, const std::string& where, std::size_t rows) {
-    constexpr std::size_t width = sizeof(Row) / sizeof(Value);
-    const std::vector<Value> values = values_of<Value>(std::move(array), where, rows, width);
-    std::vector<Row> result(rows);
-    if (rows > 0) std::memcpy(static_cast<void*>(result.data()), values.data(), values.size() * sizeof(Value));
-    return result;
-}
-
-template <typename Row, typename Value>
-Array array_of_rows(const std::vector<Row>& rows) {
-    constexpr std::size_t width = sizeof(Row) / sizeof(Value);
-    std::vector<Value> values(rows.size() * width);
-    if (!rows.empty()) std::memcpy(values.data(), static_cast<const void*>(rows.data()), values.size() * sizeof(Value));
-    return {{rows.size(), width}, std::move(values)};
-}
-
-template <typename Value>
-Array array_of(std::vector<Value>&& values) {
-    return {{values.size()}, std::move(values)};
-}
-
 Vec3 vector_from(const Json& json, const std::string& where) {
-    if (!json.is_array() || json.size() != 3) throw Error(where + " is " + json.dump() + ", not a list of three numbers");
+    if (!json.is_array() || json.size() != 3) throw Error(where + " is " + shown(json) + ", not a list of three numbers");
     Vec3 vector;
     for (std::size_t axis = 0; axis < 3; ++axis)
         vector[static_cast<Eigen::Index>(axis)] = number_from(json[axis], where, std::numeric_limits<double>::lowest());
@@ -81,21 +40,22 @@ Box box_from(const Json& header, const std::string& place) {
     const Json& json = header["box"];
     Box box;
     if (json.contains("origin")) box.origin = vector_from(json["origin"], place + ": box.origin");
-    if (!json["vectors"].is_array() || json["vectors"].size() != 3) throw Error(place + ": box.vectors is not a list of three vectors");
+    if (!json["vectors"].is_array() || json["vectors"].size() != 3)
+        throw Error(place + ": box.vectors is not a list of three vectors");
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto row = static_cast<Eigen::Index>(axis);
         Vec3 vector = vector_from(json["vectors"][axis], place + ": box.vectors");
         box.lengths[row] = vector[row];
         vector[row] = 0.0;
         if (!(box.lengths[row] > 0.0) || vector.norm() > off_axis * box.lengths[row])
-            throw Error(place + ": box vector " + std::to_string(axis) + " is " + json["vectors"][axis].dump() +
+            throw Error(place + ": box vector " + std::to_string(axis) + " is " + shown(json["vectors"][axis]) +
                         "; only boxes with positive edges along x, y, z are supported");
     }
     if (json.contains("periodic")) {
         const Json& periodic = json["periodic"];
-        if (!periodic.is_array() || periodic.size() != 3) throw Error(place + ": box.periodic is not a list of three true or false");
+        const bool three = periodic.is_array() && periodic.size() == 3;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!periodic[axis].is_boolean()) throw Error(place + ": box.periodic is not a list of three true or false");
+            if (!three || !periodic[axis].is_boolean()) throw Error(place + ": box.periodic is not a list of three true or false");
             box.periodic[axis] = periodic[axis].get<bool>();
         }
     }
@@ -104,18 +64,27 @@ Box box_from(const Json& header, const std::string& place) {
 
 void check_kind(const Json& header, const std::string& place) {
     if (const Json format = header.value("format", Json("dem-state")); format != "dem-state")
-        throw Error(place + ": is " + format.dump() + ", wanted dem-state");
+        throw Error(place + ": is " + shown(format) + ", wanted dem-state");
     if (const Json version = header.value("version", Json(format_version)); version != format_version)
-        throw Error(place + ": has version " + version.dump() + ", this program knows version " + std::to_string(format_version));
+        throw Error(place + ": has version " + shown(version) + ", this program knows version " + std::to_string(format_version));
     if (const Json units = header.value("units", Json("SI")); units != "SI")
-        throw Error(place + ": has units " + units.dump() + ", wanted \"SI\"");
+        throw Error(place + ": has units " + shown(units) + ", wanted \"SI\"");
 }
 
 void check_ids(const std::vector<std::int64_t>& ids, const std::string& where) {
     if (std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end()) return;
     std::unordered_set<std::int64_t> seen;
     for (std::size_t row = 0; row < ids.size(); ++row)
-        if (!seen.insert(ids[row]).second) throw Error(where + ", row " + std::to_string(row) + ": id " + std::to_string(ids[row]) + " is repeated");
+        if (!seen.insert(ids[row]).second)
+            throw Error(where + ", row " + std::to_string(row) + ": id " + std::to_string(ids[row]) + " is repeated");
+}
+
+/// Arrays that nobody here knows have a row for each particle or bond too.
+void check_rows(const std::vector<NamedArray>& arrays, const std::string& where, std::size_t rows, const char* what) {
+    for (const NamedArray& named : arrays)
+        if (named.array.rows() != rows)
+            throw Error(where + clipped(named.name) + " has " + std::to_string(named.array.rows()) + " rows, there are " +
+                        std::to_string(rows) + " " + what);
 }
 
 Particles particles_from(std::vector<NamedArray> arrays, std::size_t materials, const std::string& place) {
@@ -141,16 +110,14 @@ Particles particles_from(std::vector<NamedArray> arrays, std::size_t materials, 
 
     for (std::size_t row = 0; row < count; ++row) {
         const auto refuse = [&](const std::string& cause) {
-            throw Error(place + ": particle " + std::to_string(particles.id[row]) + " (row " + std::to_string(row) + ") has " + cause);
+            throw Error(place + ": particle " + std::to_string(particles.id[row]) + " (row " + std::to_string(row) + ") has " +
+                        cause);
         };
-        if (!(particles.radius[row] > 0.0)) refuse("radius " + Json(particles.radius[row]).dump() + ", wanted a positive one");
+        if (!(particles.radius[row] > 0.0)) refuse("radius " + shown(particles.radius[row]) + ", wanted a positive one");
         if (particles.material[row] < 0 || static_cast<std::size_t>(particles.material[row]) >= materials)
             refuse("material " + std::to_string(particles.material[row]) + ", there are " + std::to_string(materials));
     }
-    for (const NamedArray& named : arrays)
-        if (named.array.rows() != count)
-            throw Error(where + named.name + " has " + std::to_string(named.array.rows()) + " rows, there are " + std::to_string(count) +
-                        " particles");
+    check_rows(arrays, where, count, "particles");
     particles.other = std::move(arrays);
     return particles;
 }
@@ -172,18 +139,19 @@ Bonds bonds_from(std::vector<NamedArray> arrays, std::size_t particles, const st
 
     const bool default_volume = bonds.volume.empty();
     for (std::size_t row = 0; row < count; ++row) {
-        const auto refuse = [&](const std::string& cause) { throw Error(place + ": bond " + std::to_string(row) + " has " + cause); };
+        const auto refuse = [&](const std::string& cause) {
+            throw Error(place + ": bond " + std::to_string(row) + " has " + cause);
+        };
         for (const std::int32_t particle : bonds.pair[row])
             if (particle < 0 || static_cast<std::size_t>(particle) >= particles)
                 refuse("particle row " + std::to_string(particle) + ", there are " + std::to_string(particles));
-        if (bonds.radius[row] < 0.0) refuse("radius " + Json(bonds.radius[row]).dump());
+        if (bonds.pair[row][0] == bonds.pair[row][1] && bonds.image[row] == Image{0, 0, 0})
+            refuse("particle row " + std::to_string(bonds.pair[row][0]) + " at both ends");
+        if (bonds.radius[row] < 0.0) refuse("radius " + shown(bonds.radius[row]) + ", wanted none below zero");
         if (default_volume)
             bonds.volume.push_back(std::numbers::pi * bonds.radius[row] * bonds.radius[row] * std::max(0.0, bonds.length[row]));
     }
-    for (const NamedArray& named : arrays)
-        if (named.array.rows() != count)
-            throw Error(where + named.name + " has " + std::to_string(named.array.rows()) + " rows, there are " + std::to_string(count) +
-                        " bonds");
+    check_rows(arrays, where, count, "bonds");
     bonds.other = std::move(arrays);
     return bonds;
 }
@@ -193,6 +161,36 @@ const Json& list_at(const Json& header, const char* key, const std::string& plac
     if (!header.contains(key)) return empty;
     if (!header[key].is_array()) throw Error(place + ": " + key + " is not a list");
     return header[key];
+}
+
+std::vector<Material> materials_from(const Json& header, const std::string& place) {
+    std::vector<Material> materials;
+    for (const Json& json : list_at(header, "materials", place)) {
+        Material material = material_from(json, place);
+        const auto same_name = [&](const Material& other) { return other.name == material.name; };
+        if (std::any_of(materials.begin(), materials.end(), same_name))
+            throw Error(place + ": material '" + clipped(material.name) + "' stands twice");
+        materials.push_back(std::move(material));
+    }
+    if (materials.empty()) materials.push_back(physics::builtin_material("alumina"));
+    return materials;
+}
+
+/// The header without all that a State holds in its own members.
+Json unknown_keys(Json header) {
+    const auto erase = [](Json& object, std::initializer_list<const char*> keys) {
+        for (const char* key : keys) object.erase(key);
+        return object.empty();
+    };
+    erase(header, {"format", "version", "units", "time", "temperature", "materials", "history"});
+    if (erase(header["box"], {"origin", "vectors", "periodic"})) header.erase("box");
+    if (header.contains("contacts")) {
+        bool all_known = true;
+        for (Json& contact : header["contacts"])
+            all_known &= erase(contact, {"materials", "surface_energy", "diffusion_parameter"});
+        if (all_known) header.erase("contacts");
+    }
+    return header;
 }
 
 }  // namespace
@@ -205,53 +203,16 @@ State state_from(Document document) {
     if (header.contains("time")) state.time = number_from(header["time"], place + ": time", std::numeric_limits<double>::lowest());
     if (header.contains("temperature")) state.temperature = number_from(header["temperature"], place + ": temperature", 0.0);
     state.box = box_from(header, place);
-    for (const Json& json : list_at(header, "materials", place)) state.materials.push_back(material_from(json, place));
-    if (state.materials.empty()) state.materials.push_back(physics::builtin_material("alumina"));
+    state.materials = materials_from(header, place);
     for (const Json& json : list_at(header, "contacts", place))
         state.contacts.push_back(material_pair_from(json, state.materials, place));
     state.history = list_at(header, "history", place);
+    for (const char* group : {"particles", "bonds"})
+        if (header.contains(group)) throw Error(place + ": " + group + " is not an object of arrays");
     state.particles = particles_from(std::move(document.particles), state.materials.size(), place);
     if (document.has_bonds) state.bonds = bonds_from(std::move(document.bonds), state.particles.size(), place);
-    state.other = std::move(document.header);
-    for (const char* key : {"format", "version", "units", "time", "temperature", "box", "materials", "contacts", "history"})
-        state.other.erase(key);
+    state.other = unknown_keys(std::move(document.header));
     return state;
-}
-
-Document document_from(State state) {
-    Document document;
-    const Vec3& origin = state.box.origin;
-    const Vec3& lengths = state.box.lengths;
-    Json& header = document.header;
-    header = {{"format", "dem-state"}, {"version", format_version}, {"units", "SI"}, {"time", state.time}};
-    if (state.temperature) header["temperature"] = *state.temperature;
-    header["box"] = {{"origin", {origin[0], origin[1], origin[2]}},
-                     {"vectors", {{lengths[0], 0.0, 0.0}, {0.0, lengths[1], 0.0}, {0.0, 0.0, lengths[2]}}},
-                     {"periodic", state.box.periodic}};
-    header["materials"] = Json::array();
-    for (const Material& material : state.materials) header["materials"].push_back(material_json(material));
-    for (const MaterialPair& pair : state.contacts) header["contacts"].push_back(material_pair_json(pair, state.materials));
-    for (const auto& [key, value] : state.other.items()) header[key] = value;
-    header["history"] = std::move(state.history);
-
-    Particles& particles = state.particles;
-    const Array positions = array_of_rows<Vec3, double>(particles.position);
-    document.particles = {{"id", array_of(std::move(particles.id))},
-                          {"position", positions},
-                          {"radius", array_of(std::move(particles.radius))},
-                          {"material", array_of(std::move(particles.material))}};
-    std::move(particles.other.begin(), particles.other.end(), std::back_inserter(document.particles));
-    if (state.bonds) {
-        Bonds& bonds = *state.bonds;
-        document.has_bonds = true;
-        document.bonds = {{"pair", array_of_rows<std::array<std::int32_t, 2>, std::int32_t>(bonds.pair)},
-                          {"image", array_of_rows<Image, std::int8_t>(bonds.image)},
-                          {"radius", array_of(std::move(bonds.radius))},
-                          {"length", array_of(std::move(bonds.length))},
-                          {"volume", array_of(std::move(bonds.volume))}};
-        std::move(bonds.other.begin(), bonds.other.end(), std::back_inserter(document.bonds));
-    }
-    return document;
 }
 
 }  // namespace kiln::io

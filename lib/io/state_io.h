@@ -9,11 +9,13 @@ namespace kiln::io {
 inline constexpr int format_version = 1;
 
 /// Checks the document and moves its arrays into a state.
-/// Throws Error naming document, array and row: not dem-state, unknown version, units other than SI, wrong type or shape, index out of
-/// range, NaN or infinity, radius <= 0, unknown material, box not orthogonal, repeated id.
+/// Throws Error naming document, array and row: not dem-state, unknown version, units other than SI, wrong type or shape, index out
+/// of range, NaN or infinity, radius <= 0, unknown material, box not orthogonal, repeated id or material, a bond of a particle with
+/// itself.
+/// Unknown keys of the document, its box and its contacts end in State::other, in the same places.
 State state_from(Document document);
 
-/// The state as a document; arrays are moved out of it.
+/// The state as a document; arrays are moved out of it. Throws Error that names array and row of a NaN or an infinity.
 Document document_from(State state);
 
 /// JSON of one material, as it stands in a document.
@@ -25,6 +27,10 @@ Material material_from(const Json& json, const std::string& place);
 /// The same for a pair of materials under "contacts".
 Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials);
 MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place);
+
+/// Puts unknown keys back beside the known ones they stood with: into the objects of target, and those of its lists where the
+/// lengths agree. What target has already stays.
+void put_back(Json& target, const Json& carried);
 
 /// A finite number >= lowest, or Error that starts with where.
 double number_from(const Json& json, const std::string& where, double lowest);

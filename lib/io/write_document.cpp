@@ -1,9 +1,5 @@
 // write_document.cpp: writing one document, as text or with 64-byte aligned binary arrays.
-#include <unistd.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 
 #include "io/array_types.h"
 #include "io/document.h"
@@ -18,15 +14,21 @@ constexpr std::size_t alignment = 64;  // bytes
 std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
 
 void put(std::FILE* file, const std::string& name, const void* data, std::size_t bytes) {
-    if (std::fwrite(data, 1, bytes, file) == bytes) return;
-    if (errno == EPIPE) throw ClosedPipe();
-    throw Error(name + ": cannot be written: " + std::strerror(errno));
+    if (std::fwrite(data, 1, bytes, file) != bytes) throw_system_error(name + ": cannot be written");
 }
 
-void check_finite(const Json& json, const std::string& path) {
-    if (json.is_number_float() && !std::isfinite(json.get<double>())) throw Error(path + " is not a finite number");
+/// JSON has no word for NaN and infinity; the library would write null.
+void check_finite(const Json& json, const std::string& where) {
+    if (json.is_number_float() && !std::isfinite(json.get<double>())) throw Error(where + " is not a finite number");
     if (json.is_structured())
-        for (const auto& [key, value] : json.items()) check_finite(value, path.empty() ? key : path + "." + key);
+        for (const auto& [key, value] : json.items()) check_finite(value, where + "." + key);
+}
+
+/// Keys of a header that the reader would take for arrays or for their size.
+void check_reserved(const Json& header, const std::string& name) {
+    const bool taken = header.contains("bytes") || (header.contains("particles") && header["particles"].is_object()) ||
+                       (header.contains("bonds") && header["bonds"].is_object());
+    if (taken) throw Error(name + ": the keys particles, bonds and bytes of a document belong to its arrays");
 }
 
 Json array_head(const Array& array) { return {{"type", type_name(array)}, {"shape", array.shape}}; }
@@ -58,18 +60,30 @@ Payload payload_of(const Array& array) {
     return std::visit([](const auto& values) { return Payload{values.data(), values.size() * sizeof(values[0])}; }, array.data);
 }
 
+/// What would make a stream that nobody can read.
+void check_array(const Array& array, const Json& others, const std::string& name, const std::string& where) {
+    if (others.contains(name)) throw Error(where + " stands twice");
+    const std::size_t values = std::visit([](const auto& data) { return data.size(); }, array.data);
+    if (array.shape.empty() || array.rows() * array.row_length() != values)
+        throw Error(where + " has " + std::to_string(values) + " values where its shape wants " +
+                    std::to_string(array.rows() * array.row_length()));
+}
+
 }  // namespace
 
 void write_document(std::FILE* file, const std::string& name, const Document& document, bool text) {
-    check_finite(document.header, "");
+    check_reserved(document.header, name);
+    for (const auto& [key, value] : document.header.items()) check_finite(value, name + ": " + key);
     Json header = document.header;
     std::vector<Payload> payloads;
     std::size_t bytes = 0;
     const auto add_group = [&](const char* group, const std::vector<NamedArray>& arrays) {
         Json& specs = header[group] = Json::object();
         for (const NamedArray& named : arrays) {
+            const std::string where = name + ": " + group + "." + named.name;
+            check_array(named.array, specs, named.name, where);
             if (text) {
-                specs[named.name] = text_array(named.array, std::string(group) + "." + named.name);
+                specs[named.name] = text_array(named.array, where);
                 continue;
             }
             specs[named.name] = array_head(named.array);
@@ -80,10 +94,10 @@ void write_document(std::FILE* file, const std::string& name, const Document& do
     };
     if (!document.particles.empty()) add_group("particles", document.particles);
     if (document.has_bonds) add_group("bonds", document.bonds);
-    if (bytes > 0) header["bytes"] = bytes;
+    if (!payloads.empty()) header["bytes"] = bytes;
 
     std::string line = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (bytes > 0) line.append(aligned(line.size() + 1) - line.size() - 1, ' ');
+    if (!payloads.empty()) line.append(aligned(line.size() + 1) - line.size() - 1, ' ');
     line += '\n';
     put(file, name, line.data(), line.size());
     constexpr std::array<char, alignment> zeros{};
