@@ -26,20 +26,26 @@ void watch_signals() {
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe comes back as an error of write
+    if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // under nohup it stays ignored
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // these come back as errors of write
 }
 
 /// --help and --version: everything is said already.
 struct Finished {};
 
 /// Options that change where or how a result is written, not the result.
-constexpr std::array without_bearing{"--help", "--version", "--config", "--output", "--text", "--quiet", "--verbose", "--threads", "files"};
+constexpr std::array without_bearing{"--help",  "--version", "--config",  "--output", "--text",
+                                     "--quiet", "--verbose", "--threads", "files"};
 
+/// The text without line ends and what else a terminal would act on; names in it come from files.
 std::string one_line(std::string text) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
     return text;
 }
+
+/// Status of a run that ended in a signal, as a shell counts it; `usual` of one that did not.
+int status_after_signal(int usual) { return signal_seen == 0 ? usual : 128 + signal_seen; }
 
 }  // namespace
 
@@ -67,9 +73,11 @@ int run(const std::string& tool, int argc, char** argv, const std::function<int(
     const auto say = [&](const std::string& sentence) { std::cerr << tool << ": " << one_line(sentence) << "\n"; };
     try {
         const int status = body(argc, argv);
-        return stop_requested() && status == done ? interrupted : status;
+        return status == done || status == interrupted ? status_after_signal(status) : status;
     } catch (const Finished&) {
-        return done;
+        if (std::cout.flush()) return done;
+        say("standard output cannot be written");
+        return failed;
     } catch (const CLI::FileError& error) {
         say(error.what());
         return failed;
@@ -78,10 +86,11 @@ int run(const std::string& tool, int argc, char** argv, const std::function<int(
         return wrong_usage;
     } catch (const io::ClosedPipe&) {
         return closed_pipe;
+    } catch (const io::Interrupted&) {
+        return status_after_signal(interrupted);
     } catch (const std::bad_alloc&) {
         say("there is not enough memory");
     } catch (const std::exception& error) {
-        if (stop_requested()) return interrupted;
         say(error.what());
     }
     return failed;
@@ -104,7 +113,9 @@ Json history_entry(const std::string& tool, const CLI::App& app, const Json& sum
     Json entry{{"tool", tool}, {"version", version}, {"arguments", Json::array()}};
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_positional() ? "files" : option->get_name();
-        if (option->count() == 0 || std::find(without_bearing.begin(), without_bearing.end(), name) != without_bearing.end()) continue;
+        const bool bears = std::find(without_bearing.begin(), without_bearing.end(), name) == without_bearing.end();
+        const bool switched_off = option->get_expected_min() == 0 && option->results() == std::vector<std::string>{"false"};
+        if (option->count() == 0 || !bears || switched_off) continue;
         entry["arguments"].push_back(name);
         std::string values;
         for (const std::string& value : option->results()) values += (values.empty() ? "" : ",") + value;
