@@ -52,7 +52,7 @@ struct Wanted {
 
     /// Takes off what has been reached; true if a state is due.
     bool reached(double density, double time, double time_goal) {
-        bool due = std::abs(time - time_goal) <= same_time * std::abs(time_goal);
+        bool due = time >= time_goal * (1.0 - same_time);
         constexpr double same_density = 1e-6;  // relative
         while (!densities.empty() && density >= densities.front() * (1.0 - same_density)) {
             densities.erase(densities.begin());
