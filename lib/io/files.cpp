@@ -77,6 +77,7 @@ Output::Output(std::string name, bool text) : name_(std::move(name)), text_(text
     }
     struct stat status {};
     const bool exists = stat(name_.c_str(), &status) == 0;
+    if (!exists && errno != ENOENT) fail();
     if (exists && !S_ISREG(status.st_mode)) {  // a device or a pipe has no whole to wait for
         file_ = std::fopen(name_.c_str(), "wbe");
         if (!file_) fail();
