@@ -104,7 +104,9 @@ TEST_CASE("what is no array is refused") {
 }
 
 TEST_CASE("what is no shape is refused") {
-    const auto shape = [](const std::string& text) { return refusal(with_array(R"({"type":"f8","shape":)" + text + R"(,"data":[]})")); };
+    const auto shape = [](const std::string& text) {
+        return refusal(with_array(R"({"type":"f8","shape":)" + text + R"(,"data":[]})"));
+    };
     for (const char* none : {"3", "[]", "null", "\"3\""})
         CHECK(shape(none) == "stream, document 1: particles.x: has no shape, a list of sizes such as [N,3]");
     for (const char* wrong : {"[-1]", "[1.5]", "[\"a\"]", "[null]", "[2147483648]", "[18446744073709551615]", "[1,[2]]"})
@@ -165,8 +167,8 @@ TEST_CASE("binary arrays stay inside the payload and apart from each other") {
         CHECK(arrays(wrong, "0", "64") == place + "particles.x: at is not an offset in bytes");
     for (const char* wrong : {"-1", "64.0", "\"64\"", "null", "1e3"})
         CHECK(arrays("0", "16", wrong).starts_with(place + "bytes is "));
-    CHECK(refusal(with_array(R"({"type":"f8","shape":[1],"at":0})")) == place + "particles.x: reaches beyond the 0 bytes of the document");
-    CHECK(refusal(with_array(R"({"type":"f8","shape":[0],"at":1})")) == place + "particles.x: reaches beyond the 0 bytes of the document");
+    for (const char* none : {R"({"type":"f8","shape":[1],"at":0})", R"({"type":"f8","shape":[0],"at":1})"})
+        CHECK(refusal(with_array(none)) == place + "particles.x: reaches beyond the 0 bytes of the document");
 }
 
 TEST_CASE("sizes that no file has take no memory, of a file or a pipe") {

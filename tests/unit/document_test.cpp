@@ -26,7 +26,8 @@ std::vector<Value> extremes() {
 /// All seven types, an empty array, a column without rows, keys and arrays that nobody knows.
 io::Document rich_document() {
     io::Document document;
-    document.header = Json::parse(R"({"format":"other","zebra":null,"apple":[1,{"b":[],"a":{}}],"text":"\u00e9 \u0000 \ud83d\ude00","time":1e-300})");
+    document.header = Json::parse(
+        R"({"format":"other","zebra":null,"apple":[1,{"b":[],"a":{}}],"text":"\u00e9 \u0000 \ud83d\ude00","time":1e-300})");
     document.particles = {
         array("zeta", {2, 3}, std::vector<double>{0.1, -0.0, 5e-324, 1.7976931348623157e308, 1.0 / 3.0, 2.2250738585072014e-308}),
         array("single", {6}, extremes<float>()),
@@ -146,7 +147,8 @@ TEST_CASE("one document holds text arrays beside binary ones, in any order and w
         R"({"particles":{"late":{"type":"f8","shape":[1],"at":16},"text":{"type":"i1","shape":[1,2],"data":[-128,127]},)"
         R"("early":{"type":"i2","shape":[1],"at":3}},"bytes":32})"
         "\n" + payload);
-    check_same(document.particles, {array("late", {1}, std::vector<double>{pi}), array("text", {1, 2}, std::vector<std::int8_t>{-128, 127}),
+    check_same(document.particles, {array("late", {1}, std::vector<double>{pi}),
+                                    array("text", {1, 2}, std::vector<std::int8_t>{-128, 127}),
                                     array("early", {1}, std::vector<std::int16_t>{small})});
 }
 
@@ -157,7 +159,8 @@ TEST_CASE("text holds every double and every float exactly") {
     while (doubles.size() < 20000) {
         const std::uint64_t bits = random();
         if (const double value = std::bit_cast<double>(bits); std::isfinite(value)) doubles.push_back(value);
-        if (const float value = std::bit_cast<float>(static_cast<std::uint32_t>(bits)); std::isfinite(value)) floats.push_back(value);
+        const float single = std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+        if (std::isfinite(single)) floats.push_back(single);
     }
     io::Document document;
     document.header = Json::object();

@@ -103,7 +103,8 @@ class Folder {
     ~Folder() { std::filesystem::remove_all(path_); }
     std::string operator/(const std::string& name) const { return path_ + "/" + name; }
     std::size_t size() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+        const std::filesystem::directory_iterator first(path_), end;
+        return static_cast<std::size_t>(std::distance(first, end));
     }
 
    private:

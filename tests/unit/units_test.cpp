@@ -1,0 +1,157 @@
+// units_test.cpp: every unit of the command line by its SI value, and what is no quantity.
+#include <doctest/doctest.h>
+
+#include <numbers>
+
+#include "cli/units.h"
+
+namespace {
+
+using namespace kiln::cli;
+
+struct Case {
+    Dimension dimension;
+    const char* text;
+    double value;  // SI
+};
+
+/// What is said of a text that is no quantity; empty where it is one.
+std::string refusal(const std::string& text, Dimension dimension) {
+    try {
+        parse_quantity(text, dimension);
+    } catch (const CLI::ValidationError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST_CASE("every unit has its SI value, to the last bit") {
+    const Case cases[] = {
+        {Dimension::none, "0.5", 0.5},
+        {Dimension::length, "2m", 2.0},
+        {Dimension::length, "5cm", 0.05},
+        {Dimension::length, "3mm", 3e-3},
+        {Dimension::length, "0.7um", 0.7e-6},
+        {Dimension::length, "100nm", 1e-7},
+        {Dimension::length, "1e-3m", 1e-3},
+        {Dimension::area, "2m2", 2.0},
+        {Dimension::area, "2mm2", 2e-6},
+        {Dimension::volume, "2m3", 2.0},
+        {Dimension::volume, "2l", 2e-3},
+        {Dimension::time, "90s", 90.0},
+        {Dimension::time, "7ms", 7e-3},
+        {Dimension::time, "2min", 120.0},
+        {Dimension::time, "1.5h", 5400.0},
+        {Dimension::temperature, "1473K", 1473.0},
+        {Dimension::temperature, "1200C", 1473.15},
+        {Dimension::temperature, "-5C", 268.15},
+        {Dimension::heating_rate, "2K/s", 2.0},
+        {Dimension::heating_rate, "3K/min", 0.05},
+        {Dimension::heating_rate, "36K/h", 0.01},
+        {Dimension::pressure, "1e5Pa", 1e5},
+        {Dimension::pressure, "3kPa", 3e3},
+        {Dimension::pressure, "150MPa", 150e6},
+        {Dimension::pressure, "400GPa", 400e9},
+        {Dimension::force, "2N", 2.0},
+        {Dimension::force, "2kN", 2e3},
+        {Dimension::force, "3mN", 3e-3},
+        {Dimension::force, "3uN", 3e-6},
+        {Dimension::force, "3nN", 3e-9},
+        {Dimension::velocity, "3m/s", 3.0},
+        {Dimension::velocity, "3mm/s", 3e-3},
+        {Dimension::velocity, "3um/s", 3e-6},
+        {Dimension::velocity, "3nm/s", 3e-9},
+        {Dimension::surface_energy, "1.1J/m2", 1.1},
+        {Dimension::surface_energy, "905mJ/m2", 0.905},
+        {Dimension::molar_energy, "475000J/mol", 475e3},
+        {Dimension::molar_energy, "475kJ/mol", 475e3},
+        {Dimension::mass_density, "3950kg/m3", 3950.0},
+        {Dimension::mass_density, "3.95g/cm3", 3950.0},
+        {Dimension::angle, "1.5rad", 1.5},
+        {Dimension::angle, "180deg", std::numbers::pi},
+        {Dimension::diffusion_volume, "1.3e-8m3/s", 1.3e-8},
+    };
+    std::vector<std::string> tested;
+    for (const Case& each : cases) {
+        CAPTURE(each.text);
+        CHECK(parse_quantity(each.text, each.dimension) == each.value);
+        tested.push_back(each.text);
+    }
+    for (int dimension = 1; dimension <= static_cast<int>(Dimension::diffusion_volume); ++dimension) {
+        std::istringstream known(known_units(static_cast<Dimension>(dimension)));
+        for (std::string unit; std::getline(known >> std::ws, unit, ',');) {
+            CAPTURE(unit);
+            CHECK(std::any_of(tested.begin(), tested.end(), [&](const std::string& text) {
+                return text.ends_with(unit) && text.size() > unit.size() &&
+                       std::isdigit(static_cast<unsigned char>(text[text.size() - unit.size() - 1]));
+            }));
+        }
+    }
+}
+
+TEST_CASE("blanks may stand around a quantity and before its unit") {
+    for (const char* text : {"50 nm", "  50nm", "50nm   ", " 50  nm "}) CHECK(parse_quantity(text, Dimension::length) == 5e-8);
+    CHECK(parse_quantity(" 3 ", Dimension::none) == 3.0);
+}
+
+TEST_CASE("a missing unit is refused, with the units that are known") {
+    for (const char* text : {"50", "50 ", "0", "-1", "1e-3"})
+        CHECK(refusal(text, Dimension::length) == "'" + std::string(text) + "' has no unit; known here: m, cm, mm, um, nm");
+}
+
+TEST_CASE("a unit of another kind or another case is refused") {
+    const std::string wrong = " has no unit of the right kind; known here: ";
+    CHECK(refusal("50s", Dimension::length) == "'50s'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("3mPa", Dimension::pressure) == "'3mPa'" + wrong + "Pa, kPa, MPa, GPa");
+    CHECK(refusal("3mpa", Dimension::pressure) == "'3mpa'" + wrong + "Pa, kPa, MPa, GPa");
+    CHECK(refusal("50NM", Dimension::length) == "'50NM'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("300k", Dimension::temperature) == "'300k'" + wrong + "K, C");
+    CHECK(refusal("300c", Dimension::temperature) == "'300c'" + wrong + "K, C");
+    CHECK(refusal("1H", Dimension::time) == "'1H'" + wrong + "s, ms, min, h");
+    CHECK(refusal("5nmx", Dimension::length) == "'5nmx'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("5nm 6nm", Dimension::length) == "'5nm 6nm'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("0x10m", Dimension::length) == "'0x10m'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("1,5nm", Dimension::length) == "'1,5nm'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("5\tnm", Dimension::length) == "'5\tnm'" + wrong + "m, cm, mm, um, nm");
+    CHECK(refusal("5nm", Dimension::none) == "'5nm' has a unit where a plain number is wanted");
+    CHECK(refusal("0x10", Dimension::none) == "'0x10' has a unit where a plain number is wanted");
+}
+
+TEST_CASE("what is no finite number is refused") {
+    for (const char* text : {"", " ", "nm", "nan", "nanm", "inf", "infm", "-infm", "nm5", "+5nm", "--5nm", ".", "e5m"})
+        CHECK(refusal(text, Dimension::length) == "'" + std::string(text) + "' is not a number");
+    for (const char* text : {"1e999m", "-1e999m"})
+        CHECK(refusal(text, Dimension::length) == "'" + std::string(text) + "' is out of the range of numbers");
+    CHECK(refusal("1e308GPa", Dimension::pressure) == "'1e308GPa' is out of the range of numbers");
+}
+
+TEST_CASE("no temperature is at absolute zero or below") {
+    for (const char* text : {"0K", "-1K", "-273.15C", "-300C"})
+        CHECK(refusal(text, Dimension::temperature) == "'" + std::string(text) + "' is not above absolute zero");
+}
+
+TEST_CASE("options take quantities, single and in lists, and their errors name the option") {
+    CLI::App app;
+    double diameter = 0.0;
+    std::vector<double> times;
+    add_quantity(app, "--diameter", diameter, Dimension::length, "size", "100nm");
+    add_quantities(app, "--at-time", times, Dimension::time, "when");
+    app.parse(std::vector<std::string>{"1h,30min,5s", "--at-time", "50nm", "--diameter"});  // CLI11 takes them last first
+    CHECK(diameter == 5e-8);
+    CHECK(times == std::vector<double>{3600.0, 1800.0, 5.0});
+    const std::string help = app.help();
+    CHECK(help.find("[m, cm, mm, um, nm]") != std::string::npos);
+    CHECK(help.find("100nm") != std::string::npos);
+    const auto failure = [&](std::vector<std::string> arguments) -> std::string {
+        try {
+            app.parse(std::move(arguments));
+        } catch (const CLI::ParseError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(failure({"5", "--diameter"}).find("--diameter: '5' has no unit") == 0);
+    CHECK(failure({"1h,2", "--at-time"}).find("--at-time: '2' has no unit") == 0);
+}
+
+}  // namespace
