@@ -18,6 +18,7 @@ constexpr std::int64_t most_cells = 1 << 20;  // along an axis, so that a cell's
 constexpr double rounding_margin = 1e-9;      // in cells, so that no pair is lost to the rounding of a cell coordinate
 constexpr double farthest_home = 1e9;         // boxes that a position may be away from the box
 constexpr std::size_t chunk_particles = 512;  // particles a task; fixed, whatever the number of threads
+constexpr std::size_t worth_threads = 16;     // tasks from which it pays to wake and join threads
 
 struct Entry {
     Vec3 position;                     // m, as given
@@ -225,7 +226,7 @@ std::vector<Pair> sorted_pairs(std::span<const std::vector<Pair>> chunks, std::s
     std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
     for (const auto& chunk : chunks)
         for (const Pair& pair : chunk) pairs[next[static_cast<std::size_t>(pair.i)]++] = pair;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (chunks.size() >= worth_threads)
     for (std::size_t row = 0; row < particles; ++row)
         std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(begin[row]),
                   pairs.begin() + static_cast<std::ptrdiff_t>(begin[row + 1]),
@@ -267,7 +268,7 @@ std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std
 
     std::vector<std::vector<Pair>> chunks(tasks.size());
     std::vector<std::string> errors(tasks.size());
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (tasks.size() >= worth_threads)
     for (std::size_t task = 0; task < tasks.size(); ++task) {
         try {  // an exception must not leave a parallel loop
             chunks[task] =

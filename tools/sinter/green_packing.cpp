@@ -1,17 +1,17 @@
 // green_packing.cpp: from random points to a green body at exactly the wanted relative density.
 #include "tools/sinter/green_packing.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/neighbours.h"
+#include "core/spatial_order.h"
 
 namespace kiln::sinter {
 
 namespace {
 
-constexpr int curve_bits = 21;  // an axis; three of them fit into 64 bits
+constexpr double curve_cells = 1 << 20;  // along the longest edge: so many that hardly two particles share a cell
 
 /// Box with its origin at zero and the edges in the wanted ratio, in which solid (m3) has the relative density.
 Box box_for(const std::array<double, 3>& aspect, double solid, double density) {
@@ -21,26 +21,9 @@ Box box_for(const std::array<double, 3>& aspect, double solid, double density) {
     return box;
 }
 
-/// The low bits of a number with two zeros between each and the next.
-std::uint64_t spread_bits(std::uint64_t number) {
-    std::uint64_t spread = 0;
-    for (int bit = 0; bit < curve_bits; ++bit) spread |= (number >> bit & 1) << (3 * bit);
-    return spread;
-}
-
-/// Orders the rows along Morton's curve through cubic cells, so that neighbours in space are near each other in memory.
+/// The rows ordered along a space-filling curve.
 Particles along_curve(const Particles& particles, const Box& box) {
-    const double cell = box.lengths.maxCoeff() / static_cast<double>((1 << curve_bits) - 1);
-    std::vector<std::uint64_t> key(particles.size());
-    for (std::size_t row = 0; row < key.size(); ++row)
-        for (int axis = 0; axis < 3; ++axis)
-            key[row] |= spread_bits(static_cast<std::uint64_t>((particles.position[row][axis] - box.origin[axis]) / cell)) << axis;
-    std::vector<std::int32_t> order(particles.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        return key[static_cast<std::size_t>(a)] < key[static_cast<std::size_t>(b)];
-    });
-    return take_rows(particles, order);
+    return take_rows(particles, spatial_order(box, particles.position, box.lengths.maxCoeff() / curve_cells));
 }
 
 /// Points without correlation in a box of the given density (relative density, spheres that overlap counted twice).
