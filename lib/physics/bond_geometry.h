@@ -1,7 +1,7 @@
 // bond_geometry.h: length, volume and radius of the cylindrical bond between two spheres.
 //
 // Source: Dosta et al. 2017, "Approximation of mechanical properties of sintered materials with discrete element method",
-// section 4. Symbols: L_pp distance of the centres, R1 and R2 radii of the spheres, Rb radius of the bond, L_b its length; SI units.
+// section 4. Symbols: L_pp distance of the centres, R1 and R2 radii of the spheres, Rb radius of the bond, L_b its length.
 #pragma once
 
 namespace kiln::physics {

@@ -140,8 +140,9 @@ TEST_CASE("bondify: volume is conserved and nothing overlaps in a packing, for e
         for (std::size_t bond = 0; bond < state.bonds->size(); ++bond) {
             const auto [first, second] = state.bonds->pair[bond];
             const double distance = bond_vector(state, *state.bonds, bond).norm();
-            CHECK(state.particles.radius[static_cast<std::size_t>(first)] + state.particles.radius[static_cast<std::size_t>(second)] <=
-                  distance * (1.0 + 1e-12));
+            const double reach = state.particles.radius[static_cast<std::size_t>(first)] +
+                                 state.particles.radius[static_cast<std::size_t>(second)];
+            CHECK(reach <= distance * (1.0 + 1e-12));
             CHECK(state.bonds->volume[bond] > 0.0);
         }
         std::vector<double> reach = state.particles.radius;
@@ -168,7 +169,8 @@ TEST_CASE("bondify: the order of the particles and mirroring do not matter") {
     const Summary one = bondify::bondify(state, Options(), never_stop);
     const Summary two = bondify::bondify(mirrored, Options(), never_stop);
     for (std::size_t row = 0; row < count; ++row)
-        CHECK(mirrored.particles.radius[row] == Approx(state.particles.radius[static_cast<std::size_t>(order[row])]).epsilon(1e-12));
+        CHECK(mirrored.particles.radius[row] ==
+              Approx(state.particles.radius[static_cast<std::size_t>(order[row])]).epsilon(1e-12));
     CHECK(two.mean_diameter == Approx(one.mean_diameter).epsilon(1e-12));
     CHECK(two.mean_length == Approx(one.mean_length).epsilon(1e-12));
 }

@@ -15,7 +15,8 @@ void step(std::vector<double>& radius, std::span<const double> smallest, std::sp
         if (overlaps[i] == 0) continue;
         const double before = radius[i];
         const double after = std::max(before - (sharing == Sharing::pair ? overlaps[i] : 1) * decrement, smallest[i]);
-        given[i] = 4.0 / 3.0 * std::numbers::pi * (before - after) * (before * before + before * after + after * after) / overlaps[i];
+        const double cubes = (before - after) * (before * before + before * after + after * after);
+        given[i] = 4.0 / 3.0 * std::numbers::pi * cubes / overlaps[i];
         radius[i] = after;
     }
 }
