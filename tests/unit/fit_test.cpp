@@ -1,0 +1,142 @@
+// fit_test.cpp: lines, unloading branches and laws of modulus against porosity recover what they were made of.
+#include <doctest/doctest.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <random>
+
+#include "core/types.h"
+#include "tools/analyze/laws.h"
+#include "tools/analyze/line_fit.h"
+#include "tools/analyze/unloading.h"
+
+using namespace kiln::analyze;
+using doctest::Approx;
+
+namespace {
+
+const std::vector<double> porosity{0.33, 0.29, 0.21, 0.12, 0.05};
+const std::vector<double> alike(porosity.size(), 1.0);
+
+std::vector<double> moduli(const Law& law, const std::vector<double>& parameters, const std::vector<double>& at = porosity) {
+    std::vector<double> values;
+    for (const double p : at) values.push_back(law.modulus(p, parameters));
+    return values;
+}
+
+}  // namespace
+
+TEST_CASE("fit: a line through exact points, and the error of a slope by hand") {
+    const std::vector<double> x{1.0, 2.0, 3.0}, exact{5.0, 7.0, 9.0}, bent{5.0, 8.0, 9.0};
+    CHECK(fit_line(x, exact).slope == Approx(2.0));
+    CHECK(fit_line(x, exact).intercept == Approx(3.0));
+    CHECK(fit_line(x, exact).slope_error == Approx(0.0));
+    // Residuals -1/3, 2/3, -1/3: sum of squares 2/3, one degree of freedom, sum of (x - 2)^2 is 2.
+    CHECK(fit_line(x, bent).slope == Approx(2.0));
+    CHECK(fit_line(x, bent).slope_error == Approx(std::sqrt(1.0 / 3.0)));
+    CHECK(std::isnan(fit_line(std::vector{1.0, 2.0}, std::vector{1.0, 3.0}).slope_error));
+}
+
+TEST_CASE("fit: every law recovers its own parameters") {
+    for (const Law& law : laws()) {
+        CAPTURE(law.name);
+        for (const double scale : {1.0, 1e9}) {
+            const std::vector<double> made{410.0 * scale, 1.4};
+            const Fit fit = fit_law(law, porosity, moduli(law, made), alike);
+            CHECK(fit.parameters[0] == Approx(made[0]).epsilon(1e-10));
+            CHECK(fit.parameters[1] == Approx(made[1]).epsilon(1e-10));
+            CHECK(fit.r_squared == Approx(1.0));
+            CHECK(fit.degrees_of_freedom == 3);
+            REQUIRE(fit.covariance);
+            CHECK(std::sqrt((*fit.covariance)(0, 0)) < 1e-8 * made[0]);
+        }
+    }
+}
+
+TEST_CASE("fit: the straight law has the errors of linear regression") {
+    const std::vector<double> noisy{0.62, 0.66, 0.75, 0.89, 0.93};
+    const Fit fit = fit_law(law_named("linear"), porosity, noisy, alike);
+    const Line line = fit_line(porosity, noisy);
+    CHECK(fit.parameters[0] == Approx(line.intercept).epsilon(1e-9));
+    CHECK(fit.parameters[0] * fit.parameters[1] == Approx(-line.slope).epsilon(1e-9));
+    // Error of the slope E0 b by propagation from the covariance of E0 and b.
+    const Eigen::Vector2d gradient(fit.parameters[1], fit.parameters[0]);
+    CHECK(std::sqrt(gradient.dot(*fit.covariance * gradient)) == Approx(line.slope_error).epsilon(1e-6));
+}
+
+TEST_CASE("fit: parameters of noisy points lie within their stated errors as often as they should") {
+    const Law& law = law_named("knudsen");
+    const std::vector<double> made{410e9, 3.95};
+    std::vector<double> at, weight;
+    for (int point = 0; point < 30; ++point) at.push_back(0.05 + 0.01 * point);
+    const std::vector<double> clean = moduli(law, made, at);
+    std::mt19937_64 random(12345);
+    std::normal_distribution<double> normal;
+    for (const double modulus : clean) weight.push_back(1.0 / (modulus * modulus));
+    int within_one = 0, within_two = 0;
+    constexpr int trials = 400;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::vector<double> noisy = clean;
+        for (double& modulus : noisy) modulus *= 1.0 + 0.03 * normal(random);
+        const Fit fit = fit_law(law, at, noisy, weight);
+        const double off = std::abs(fit.parameters[1] - made[1]) / std::sqrt((*fit.covariance)(1, 1));
+        within_one += off < 1.0;
+        within_two += off < 2.0;
+    }
+    CHECK(within_one / double(trials) == Approx(0.68).epsilon(0.1));
+    CHECK(within_two / double(trials) == Approx(0.95).epsilon(0.03));
+}
+
+TEST_CASE("fit: a point of great weight draws the law to itself, and common factors of the weights do not matter") {
+    const std::vector<double> noisy{0.30, 0.34, 0.44, 0.65, 0.80};
+    std::vector<double> heavy(alike), scaled(alike);
+    heavy[3] = 1e8;
+    for (double& weight : scaled) weight *= 1e-18;
+    const Law& law = law_named("knudsen");
+    CHECK(std::abs(fit_law(law, porosity, noisy, heavy).residuals[3]) < 1e-6);
+    const Fit one = fit_law(law, porosity, noisy, alike), two = fit_law(law, porosity, noisy, scaled);
+    CHECK(two.parameters[1] == Approx(one.parameters[1]).epsilon(1e-12));
+    CHECK((*two.covariance)(1, 1) == Approx((*one.covariance)(1, 1)).epsilon(1e-9));
+}
+
+TEST_CASE("fit: too few points, points alike, no freedom") {
+    const Law& law = law_named("knudsen");
+    CHECK_THROWS_WITH_AS(fit_law(law, std::vector{0.1}, std::vector{1.0}, std::vector{1.0}), doctest::Contains("only 1 points"),
+                         kiln::Error);
+    CHECK_THROWS_WITH_AS(fit_law(law, std::vector{0.1, 0.1, 0.1}, std::vector{1.0, 1.1, 0.9}, std::vector{1.0, 1.0, 1.0}),
+                         doctest::Contains("do not determine"), kiln::Error);
+    const Fit fit = fit_law(law, std::vector{0.1, 0.2}, std::vector{2.0, 1.0}, std::vector{1.0, 1.0});
+    CHECK(fit.parameters[1] == Approx(std::log(2.0) / 0.1));
+    CHECK_FALSE(fit.covariance);
+    CHECK_THROWS_WITH_AS(law_named("knutsen"), doctest::Contains("knudsen, linear, power"), kiln::Error);
+}
+
+TEST_CASE("unloading: the last stretch on which the punch goes back") {
+    const std::vector<double> two_cycles{0, 1, 2, 1, 0, 1, 3, 2, 1};
+    const auto branch = last_unloading(two_cycles);
+    REQUIRE(branch);
+    CHECK(branch->first == 6);
+    CHECK(branch->last == 8);
+    const std::vector<double> ends_loading{0, 1, 2, 1, 0, 1, 3};
+    CHECK(last_unloading(ends_loading)->first == 2);
+    CHECK(last_unloading(ends_loading)->last == 4);
+    CHECK_FALSE(last_unloading(std::vector{0.0, 1.0, 2.0}));
+    CHECK_FALSE(last_unloading(std::vector<double>{}));
+}
+
+TEST_CASE("unloading: the window is taken of the branch's own peak, ends included") {
+    const std::vector<double> force{0, 100, 0, 60, 50, 40, 20, 10};
+    CHECK(points_in(force, {3, 7}, Window()) == std::vector<std::size_t>{4, 5, 6});
+    CHECK(points_in(force, {3, 7}, {1.0, 0.0}) == std::vector<std::size_t>{3, 4, 5, 6, 7});
+}
+
+TEST_CASE("unloading: windows as text") {
+    CHECK(parse_window("5/6:1/3").upper == Approx(5.0 / 6.0));
+    CHECK(parse_window("5/6:1/3").lower == Approx(1.0 / 3.0));
+    CHECK(parse_window("1:0").lower == 0.0);
+    CHECK(parse_window("0.8:0.2").upper == Approx(0.8));
+    for (const char* wrong : {"", "5/6", "1/3:5/6", "2:1", "0.5:-1", "a:b", "1/0:0", "0.8:0.2:0.1", "0.8 :0.2"}) {
+        CAPTURE(wrong);
+        CHECK_THROWS_AS(parse_window(wrong), CLI::ValidationError);
+    }
+}

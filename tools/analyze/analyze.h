@@ -1,0 +1,14 @@
+// analyze.h: the subcommands of analyze; argv[0] is the subcommand's name, and each parses its own options.
+#pragma once
+
+namespace kiln::analyze {
+
+int info(int argc, char** argv);
+int density(int argc, char** argv);
+int bonds(int argc, char** argv);
+int select(int argc, char** argv);
+int modulus(int argc, char** argv);
+int elastic(int argc, char** argv);
+int fit(int argc, char** argv);
+
+}  // namespace kiln::analyze

@@ -1,0 +1,90 @@
+// info.cpp: what each document of a stream holds.
+#include "io/array_types.h"
+#include "io/state_io.h"
+#include "tools/analyze/analyze.h"
+#include "tools/analyze/report.h"
+#include "tools/analyze/structure.h"
+
+namespace kiln::analyze {
+
+namespace {
+
+constexpr const char* footer =
+    "Keys: document, kind, time (s), temperature (K), relative_density, particles, bonds (counts), box (m), arrays (type and shape "
+    "as they came), materials, history (number of steps) and last_step. Documents that are not states: their keys.\n"
+    "Examples:\n"
+    "  analyze info sintered.kiln\n"
+    "  analyze info sintered.kiln | jq .last_step.summary";
+
+const std::vector<Column> columns{{"document", "document", ""},
+                                  {"kind", "kind", ""},
+                                  {"time", "time", "s"},
+                                  {"relative_density", "relative density", ""},
+                                  {"particles", "particles", ""},
+                                  {"bonds", "bonds", ""}};
+
+Json arrays_json(const std::vector<NamedArray>& arrays) {
+    Json json = Json::object();
+    for (const NamedArray& named : arrays) json[named.name] = {{"type", io::type_name(named.array)}, {"shape", named.array.shape}};
+    return json;
+}
+
+void add_history(Json& entry, const Json& history) {
+    if (!history.is_array()) return;
+    entry["history"] = history.size();
+    if (!history.empty()) entry["last_step"] = history.back();
+}
+
+Json state_info(io::Document document) {
+    Json entry{{"format", "dem-info"}, {"version", io::format_version}, {"document", document.place}, {"kind", "dem-state"}};
+    Json arrays{{"particles", arrays_json(document.particles)}};
+    if (document.has_bonds) arrays["bonds"] = arrays_json(document.bonds);
+    const Json box = document.header["box"];
+    const State state = io::state_from(std::move(document));
+    const Density density = measured_density(state);
+    entry["time"] = state.time;
+    if (state.temperature) entry["temperature"] = *state.temperature;
+    entry["relative_density"] = density.value ? Json(*density.value) : Json();
+    entry["particles"] = state.particles.size();
+    entry["bonds"] = state.bonds ? Json(state.bonds->size()) : Json();
+    entry["box"] = box;
+    entry["arrays"] = arrays;
+    entry["materials"] = Json::array();
+    for (const Material& material : state.materials) entry["materials"].push_back(io::material_json(material));
+    add_history(entry, state.history);
+    return entry;
+}
+
+Json other_info(const io::Document& document) {
+    Json entry{{"format", "dem-info"}, {"version", io::format_version}, {"document", document.place}};
+    entry["kind"] = document.header["format"];
+    for (const char* key : {"time", "relative_density"})
+        if (document.header.contains(key)) entry[key] = document.header[key];
+    entry["keys"] = Json::array();
+    for (const auto& [key, value] : document.header.items()) entry["keys"].push_back(key);
+    if (document.header.contains("history")) add_history(entry, document.header["history"]);
+    return entry;
+}
+
+}  // namespace
+
+int info(int argc, char** argv) {
+    cli::Common common;
+    bool table = false;
+    CLI::App app{"Says what each document of a stream holds.", "analyze info"};
+    app.footer(footer);
+    add_table(app, table);
+    common.add_to(app);
+    cli::parse(app, argc, argv, common);
+
+    io::Input input(common.files);
+    Report report(common, table, columns);
+    while (auto document = input.next()) {
+        const bool is_state = document->header.value("format", Json("dem-state")) == "dem-state";
+        report.add(is_state ? state_info(std::move(*document)) : other_info(*document));
+    }
+    report.finish();
+    return cli::done;
+}
+
+}  // namespace kiln::analyze

@@ -1,0 +1,56 @@
+// main.cpp: analyze, numbers out of states and test results; picks the subcommand.
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "cli/tool.h"
+#include "tools/analyze/analyze.h"
+
+namespace {
+
+using namespace kiln;
+
+struct Subcommand {
+    std::string_view name;
+    std::string_view purpose;
+    int (*run)(int, char**);
+};
+
+constexpr std::array subcommands{
+    Subcommand{"info", "what each document of a stream holds", analyze::info},
+    Subcommand{"density", "density, coordination number, overlaps and clusters of states", analyze::density},
+    Subcommand{"bonds", "number, mean diameter and length of bonds, and the distribution of their radii", analyze::bonds},
+    Subcommand{"select", "the states of a stream nearest to given densities, times or places", analyze::select},
+    Subcommand{"modulus", "Young's modulus from the last unloading of a bending test", analyze::modulus},
+    Subcommand{"elastic", "elastic tensor of a periodic cell of bonded particles", analyze::elastic},
+    Subcommand{"fit", "a law of Young's modulus against porosity through several tests", analyze::fit},
+};
+
+/// `analyze`, `analyze --help`, or a subcommand that does not exist.
+int without_subcommand(int argc, char** argv) {
+    CLI::App app{"Numbers out of states and test results: one JSON document a line, SI units, or a table with --table.", "analyze"};
+    std::string list = "Subcommands (analyze SUBCOMMAND --help says more):\n";
+    std::vector<std::string> names;
+    for (const Subcommand& each : subcommands) {
+        names.emplace_back(each.name);
+        list += "  " + names.back() + std::string(10 - names.back().size(), ' ') + std::string(each.purpose) + "\n";
+    }
+    app.footer(list + "Example:\n  sinter green.kiln --to-density 0.67,0.79 | bondify | bend | analyze modulus | analyze fit");
+    app.set_version_flag("--version", cli::version);
+    const auto refuse = [names](const std::string& given) {
+        std::string known;
+        for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+        return "there is no subcommand '" + given + "', only " + known;
+    };
+    app.add_option("SUBCOMMAND", "what to do; must come first")->required()->type_name("")->check(refuse);
+    cli::parse(app, argc, argv, cli::Common());
+    return cli::wrong_usage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    for (const Subcommand& each : subcommands)
+        if (argc > 1 && each.name == argv[1]) return cli::run("analyze " + std::string(each.name), argc - 1, argv + 1, each.run);
+    return cli::run("analyze", argc, argv, without_subcommand);
+}

@@ -1,0 +1,86 @@
+// report.cpp: JSON lines and aligned tables.
+#include "tools/analyze/report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace kiln::analyze {
+
+namespace {
+
+struct Prefix {
+    double factor;
+    const char* name;
+};
+
+constexpr std::array prefixes{Prefix{1e9, "G"},  Prefix{1e6, "M"},  Prefix{1e3, "k"},  Prefix{1.0, ""},
+                              Prefix{1e-3, "m"}, Prefix{1e-6, "u"}, Prefix{1e-9, "n"}};
+
+const Json& value_at(const Json& row, const std::string& key) {
+    static const Json nothing;
+    const auto found = row.find(key);
+    return found == row.end() ? nothing : *found;
+}
+
+/// The prefix that leaves the largest value of the column between 1 and 1000, or the nearest there is.
+Prefix prefix_of(const Column& column, const std::vector<Json>& rows) {
+    if (column.unit != "m" && column.unit != "Pa") return {1.0, ""};
+    double largest = 0.0;
+    for (const Json& row : rows)
+        if (const Json& value = value_at(row, column.key); value.is_number())
+            largest = std::max(largest, std::abs(value.get<double>()));
+    if (largest == 0.0) return {1.0, ""};
+    const auto found = std::ranges::find_if(prefixes, [&](const Prefix& prefix) { return largest >= prefix.factor; });
+    return found == prefixes.end() ? prefixes.back() : *found;
+}
+
+std::string cell(const Json& value, double factor) {
+    if (value.is_null()) return "-";
+    if (value.is_string()) return value.get<std::string>();
+    if (!value.is_number_float()) return value.dump();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.5g", value.get<double>() / factor);
+    return text;
+}
+
+}  // namespace
+
+void add_table(CLI::App& app, bool& table) {
+    app.add_flag("--table", table, "A table for people, with units, instead of JSON");
+}
+
+Report::Report(const cli::Common& common, bool table, std::vector<Column> columns)
+    : output_(common.output, true), table_(table), columns_(std::move(columns)) {}
+
+void Report::add(Json document) {
+    if (table_)
+        rows_.push_back(std::move(document));
+    else
+        output_.write(document);
+}
+
+void Report::finish() {
+    if (table_) output_.write_text(table_text(columns_, rows_));
+    output_.commit();
+}
+
+std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows) {
+    std::vector<std::string> lines(rows.size() + 1);
+    for (const Column& column : columns) {
+        const Prefix prefix = prefix_of(column, rows);
+        std::vector<std::string> cells{column.heading + (column.unit.empty() ? "" : ", " + (prefix.name + column.unit))};
+        for (const Json& row : rows) cells.push_back(cell(value_at(row, column.key), prefix.factor));
+        const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
+        for (std::size_t line = 0; line < lines.size(); ++line) {
+            if (!lines[line].empty()) lines[line] += "  ";
+            lines[line] += std::string(width - cells[line].size(), ' ') + cells[line];
+        }
+    }
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    return text;
+}
+
+}  // namespace kiln::analyze

@@ -1,0 +1,42 @@
+// report.h: what the subcommands write, JSON documents a line each or an aligned table for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/tool.h"
+#include "io/files.h"
+
+namespace kiln::analyze {
+
+/// A column of the table: the document's key, its heading, and its unit ("m" and "Pa" get a prefix, "" is a plain number or word).
+struct Column {
+    std::string key;
+    std::string heading;
+    std::string unit;
+};
+
+/// Adds --table to the app.
+void add_table(CLI::App& app, bool& table);
+
+class Report {
+   public:
+    Report(const cli::Common& common, bool table, std::vector<Column> columns);
+
+    /// One document: written at once, or kept as a row of the table.
+    void add(Json document);
+
+    /// Writes the table if there is one, and commits the output.
+    void finish();
+
+   private:
+    io::Output output_;
+    bool table_;
+    std::vector<Column> columns_;
+    std::vector<Json> rows_;
+};
+
+/// The rows as text: headings with units, numbers with five digits, columns flush right, "-" for what a row does not have.
+std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows);
+
+}  // namespace kiln::analyze

@@ -1,0 +1,51 @@
+// results.cpp: checks on the documents of test results.
+#include "tools/analyze/results.h"
+
+#include <limits>
+
+#include "io/state_io.h"
+
+namespace kiln::analyze {
+
+void expect_format(const io::Document& document, std::initializer_list<const char*> wanted, const std::string& tool) {
+    const Json format = document.header.value("format", Json("dem-state"));
+    std::string known;
+    for (const char* name : wanted) {
+        known += (known.empty() ? "" : " or ") + std::string(name);
+        if (format != name) continue;
+        const Json version = document.header.value("version", Json(io::format_version));
+        if (version != io::format_version)
+            throw Error(document.place + ": has version " + version.dump() + ", this program knows version " +
+                        std::to_string(io::format_version));
+        return;
+    }
+    const std::string found = format.is_string() ? format.get<std::string>() : format.dump();
+    throw Error(document.place + ": is " + found + ", " + tool + " reads " + known);
+}
+
+double number_at(const io::Document& document, const std::string& key, double lowest) {
+    if (!document.header.contains(key)) throw Error(document.place + ": has no " + key);
+    return io::number_from(document.header[key], document.place + ": " + key, lowest);
+}
+
+double positive_at(const io::Document& document, const std::string& key) {
+    const double number = number_at(document, key, 0.0);
+    if (number == 0.0) throw Error(document.place + ": " + key + " is zero, wanted a positive number");
+    return number;
+}
+
+std::vector<double> numbers_at(const io::Document& document, const std::string& object, const std::string& key) {
+    const std::string where = object + "." + key;
+    const Json& header = document.header;
+    if (!header.contains(object) || !header[object].is_object() || !header[object].contains(key))
+        throw Error(document.place + ": has no " + where);
+    const Json& list = header[object][key];
+    if (!list.is_array()) throw Error(document.place + ": " + where + " is not a list of numbers");
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < list.size(); ++row)
+        numbers.push_back(io::number_from(list[row], document.place + ": " + where + ", row " + std::to_string(row),
+                                          std::numeric_limits<double>::lowest()));
+    return numbers;
+}
+
+}  // namespace kiln::analyze

@@ -1,0 +1,24 @@
+// results.h: reading numbers from the documents of test results.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "io/document.h"
+
+namespace kiln::analyze {
+
+/// Throws Error "PLACE: is X, TOOL reads Y" unless the document has one of the wanted formats in a version that is known.
+void expect_format(const io::Document& document, std::initializer_list<const char*> wanted, const std::string& tool);
+
+/// The finite number at a key of the header, at least `lowest`; throws Error naming the document and the key.
+double number_at(const io::Document& document, const std::string& key, double lowest);
+
+/// The same, greater than zero.
+double positive_at(const io::Document& document, const std::string& key);
+
+/// The list of finite numbers at header[object][key]; throws Error naming the document and the key.
+std::vector<double> numbers_at(const io::Document& document, const std::string& object, const std::string& key);
+
+}  // namespace kiln::analyze
