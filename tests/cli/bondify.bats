@@ -1,0 +1,94 @@
+#!/usr/bin/env bats
+# bondify.bats: the transition to bonded particles as a program.
+bats_require_minimum_version 1.5.0
+load helper.bash
+
+DATA="$BATS_TEST_DIRNAME/../data"
+
+setup() { cd "$BATS_TEST_TMPDIR"; }
+
+value() { jq -r "$1" <<<"$output"; }
+
+@test "bondify: two spheres end with radius d/2 and the bond of what they lost" {
+    run -0 --separate-stderr "$BONDIFY" --text "$DATA/two_spheres.jsonl"
+    near "$(value '.particles.radius.data[0]')" 4.5e-8 1e-14
+    near "$(value '.particles.radius.data[1]')" 4.5e-8 1e-14
+    near "$(value '.bonds.volume.data[0]')" 2.83790536e-22 1e-8  # 2 (4/3) pi (R^3 - d^3/8)
+    assert_equal "$(value '.bonds.pair.data | tostring')" "[0,1]"
+    assert_equal "$(value '.history[-1].tool')" bondify
+    assert_equal "$(value '.history[-1].summary.bonds')" 1
+}
+
+@test "bondify: ids, unknown arrays and unknown keys pass through" {
+    run -0 --separate-stderr "$BONDIFY" --text "$DATA/two_spheres.jsonl"
+    assert_equal "$(value '.particles.id.data | tostring')" "[17,902]"
+    assert_equal "$(value '.particles.charge.data | tostring')" "[1.5,-2.5]"
+    assert_equal "$(value '.note')" "centres 90 nm apart"
+}
+
+@test "bondify: as many states come out as went in, in their order" {
+    "$BONDIFY" -q --text "$DATA/cubic_series.jsonl" >out.jsonl
+    assert_equal "$(jq -sc '[.[].time]' out.jsonl)" "[0,100,300]"
+    assert_equal "$(jq -sc '[.[].history[-1].summary.pairs]' out.jsonl)" "[0,3,3]"
+}
+
+@test "bondify: bonds of a particle with its own images can be read again" {
+    "$BONDIFY" -q "$DATA/cubic_series.jsonl" -o bonded.kiln
+    run -0 --separate-stderr "$ANALYZE" bonds bonded.kiln
+    assert_equal "$(jq -sc '[.[].count]' <<<"$output")" "[0,3,3]"
+}
+
+@test "bondify: sweeps come close to the exact result, volume is conserved by both" {
+    for method in exact "sweep --decrement 0.01nm"; do
+        run -0 --separate-stderr "$BONDIFY" --method $method --text "$DATA/two_spheres.jsonl"
+        near "$(value '.bonds.radius.data[0]')" "${first:=$(value '.bonds.radius.data[0]')}" 1e-2
+        near "$(value '1 + .history[-1].summary.volume_error')" 1 1e-12
+    done
+}
+
+@test "bondify: without the caps bonds are thicker" {
+    plain=$("$BONDIFY" --text "$DATA/two_spheres.jsonl" | jq '.bonds.radius.data[0]')
+    corrected=$("$BONDIFY" --volume cap-corrected --text "$DATA/two_spheres.jsonl" | jq '.bonds.radius.data[0]')
+    run -0 jq -n "$corrected > 1.05 * $plain"
+    assert_output true
+}
+
+@test "bondify: bonds that were there are replaced, with a warning that -q silences" {
+    "$BONDIFY" "$DATA/two_spheres.jsonl" -o once.kiln
+    run -0 --separate-stderr "$BONDIFY" --text once.kiln
+    assert_regex "$stderr" "state 1: the bonds that it had are replaced"
+    assert_equal "$(value '.bonds.radius.shape[0]')" 0
+    run -0 --separate-stderr "$BONDIFY" -q --text once.kiln
+    assert_equal "$stderr" ""
+}
+
+@test "bondify: coincident centres are refused with both ids, and no file appears" {
+    sed 's/1.9e-7/1e-7/' "$DATA/two_spheres.jsonl" >coincident.jsonl
+    run -1 "$BONDIFY" coincident.jsonl -o out.kiln
+    assert_output --partial "particles 17 and 902"
+    assert [ ! -e out.kiln ]
+}
+
+@test "bondify: bonds without room and particles that stop are said" {
+    sed -e 's/1.9e-7/1.3e-7/' -e 's/5e-8,5e-8/5e-8,5e-9/' "$DATA/two_spheres.jsonl" >inside.jsonl
+    run -0 --separate-stderr "$BONDIFY" --text inside.jsonl
+    assert_regex "$stderr" "1 of 1 bonds are clamped"
+    assert_regex "$stderr" "1 particles stopped shrinking"
+    assert_equal "$(value '.history[-1].summary | [.clamped, .stopped] | tostring')" "[1,1]"
+}
+
+@test "bondify: the same bytes for any number of threads" {
+    "$BONDIFY" -q --threads 1 "$DATA/cubic_series.jsonl" >one.kiln
+    "$BONDIFY" -q --threads 4 "$DATA/cubic_series.jsonl" >four.kiln
+    cmp one.kiln four.kiln
+}
+
+@test "bondify: options out of place are wrong usage" {
+    run -2 "$BONDIFY" --decrement 1nm "$DATA/two_spheres.jsonl"
+    assert_output --partial "--method sweep"
+    run -2 "$BONDIFY" --method sweep --decrement 1 "$DATA/two_spheres.jsonl"
+    run -2 "$BONDIFY" --method sweep --decrement 0nm "$DATA/two_spheres.jsonl"
+    run -2 "$BONDIFY" --method guess "$DATA/two_spheres.jsonl"
+    run -0 "$BONDIFY" --help
+    assert_output --partial "0.0001nm"
+}
