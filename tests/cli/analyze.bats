@@ -10,7 +10,9 @@ setup() { cd "$BATS_TEST_TMPDIR"; }
 value() { jq -r "$1" <<<"$output"; }
 
 # A dem-modulus document: relative density, modulus, standard error.
-modulus_line() { printf '{"format":"dem-modulus","version":1,"young_modulus":%s,"standard_error":%s,"relative_density":%s}\n' "$2" "$3" "$1"; }
+modulus_line() {
+    printf '{"format":"dem-modulus","version":1,"young_modulus":%s,"standard_error":%s,"relative_density":%s}\n' "$2" "$3" "$1"
+}
 
 @test "analyze: help lists the subcommands, an unknown one is wrong usage" {
     run -0 "$ANALYZE" --help
@@ -39,7 +41,8 @@ modulus_line() { printf '{"format":"dem-modulus","version":1,"young_modulus":%s,
     near "$(jq .relative_density <<<"${lines[0]}")" 0.5235987756 1e-9
     near "$(jq .relative_density <<<"${lines[2]}")" 0.7182424906 1e-9
     near "$(jq .mean_overlap_ratio <<<"${lines[2]}")" 0.1 1e-9
-    assert_equal "$(jq -c '[.measure, .particles, .coordination_number, .largest_cluster_fraction]' <<<"${lines[2]}")" '["box",1,6,1]'
+    keys='[.measure, .particles, .coordination_number, .largest_cluster_fraction]'
+    assert_equal "$(jq -c "$keys" <<<"${lines[2]}")" '["box",1,6,1]'
 }
 
 @test "analyze density: bonds count as solid" {
@@ -54,7 +57,8 @@ modulus_line() { printf '{"format":"dem-modulus","version":1,"young_modulus":%s,
     assert_equal "$(value '[.measure, .relative_density] | tostring')" '["none",null]'
     jq -nc '[range(10) as $x | range(10) as $y | range(10) as $z | $x, $y, $z] as $p |
         {box: {vectors: [[99,0,0],[0,99,0],[0,0,99]], periodic: [false,false,false]},
-         particles: {position: {type: "f8", shape: [1000,3], data: $p}, radius: {type: "f8", shape: [1000], data: [range(1000) | 0.5]}}}' >cube.jsonl
+         particles: {position: {type: "f8", shape: [1000,3], data: $p},
+                     radius: {type: "f8", shape: [1000], data: [range(1000) | 0.5]}}}' >cube.jsonl
     run -0 "$ANALYZE" density cube.jsonl
     assert_equal "$(value .measure)" inner
     near "$(value .relative_density)" 0.782 0.01  # 8^3 centres in 7^3 cells of density pi/6: counted by centres, faces included
