@@ -19,7 +19,7 @@ OPTIMISE := -O3 -DNDEBUG
 ifeq ($(NATIVE),1)
 OPTIMISE += -march=native
 endif
-CXXFLAGS := -std=c++20 -g1 $(OPTIMISE) $(WARNINGS) -fopenmp -fno-math-errno -Ilib -I. -isystem /usr/include/eigen3 $(EXTRA)
+CXXFLAGS  = -std=c++20 -g1 $(OPTIMISE) $(WARNINGS) -fopenmp -fno-math-errno -Ilib -I. -isystem /usr/include/eigen3 $(EXTRA)
 LDFLAGS  := -fopenmp $(EXTRA)
 
 TOOLS        := sinter bondify bend analyze
@@ -69,6 +69,43 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 
 -include demo.mk tests/fuzz/fuzz.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+
+# Test cases run once: quick to compile counts for more than quick to run.
+$(BUILD)/tests/%.o: OPTIMISE := -O1
+
+# ---- tests --------------------------------------------------------------------------------------------------------------------
+test: all $(BUILD)/test/unit    ## build and run all tests; ends with "N passed, M failed"
+	@BUILD=$(BUILD) PYTHON=$(PYTHON) tests/run.sh
+
+unit-test: $(BUILD)/test/unit   ## closed forms, conservation laws, limits
+	$(BUILD)/test/unit
+
+cli-test: all                   ## the programs as a user runs them
+	@BUILD=$(BUILD) PYTHON=$(PYTHON) UNIT=0 tests/run.sh
+
+asan:                           ## build with address and undefined-behaviour sanitizers into build-asan and run all tests
+	$(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \
+	    OPTIMISE="-O1 -UNDEBUG" test
+
+# ---- benchmarks, manual pages, installation -----------------------------------------------------------------------------------
+bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines in build/bench
+	@for name in $(BENCH_NAMES); do echo "== $$name"; $(BUILD)/bench/$$name | tee $(BUILD)/bench/$$name.jsonl; done
+
+man: $(TOOLS:%=$(BUILD)/man/%.1) $(BUILD)/man/dem-state.5   ## manual pages into build/man
+
+$(BUILD)/man/%.1: $(BUILD)/bin/% docs/help-to-man.sh
+	@mkdir -p $(@D)
+	docs/help-to-man.sh $< > $@
+
+$(BUILD)/man/dem-state.5: docs/dem-state.5
+	@mkdir -p $(@D)
+	cp $< $@
+
+install: all man                ## install programs and manual pages under PREFIX (default /usr/local)
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
+	install $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(BUILD)/man/*.5 $(DESTDIR)$(PREFIX)/share/man/man5
 
 clean:                          ## delete everything that was built
 	rm -rf $(BUILD)

@@ -1,22 +1,15 @@
-// preconditioner.cpp: block-Jacobi.
+// preconditioner.cpp: the block incomplete factorisation and its two triangular solves, chunk by chunk.
 #include "numerics/preconditioner.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace kiln::numerics {
 
 namespace {
 
-/// Inverse of a symmetric positive semidefinite block; zero along directions without stiffness.
-Eigen::Matrix3d pseudo_inverse(const Eigen::Matrix3d& block) {
-    constexpr double relative_floor = 1e-12;
-    const double trace = block.trace();
-    if (!(trace > 0.0)) return Eigen::Matrix3d::Zero();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block);
-    Vec3 inverse = solver.eigenvalues();
-    for (int k = 0; k < 3; ++k) inverse[k] = inverse[k] > relative_floor * trace ? 1.0 / inverse[k] : 0.0;
-    return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
-}
+/// Part of a diagonal block's trace below which what elimination left of it is rounding: the block moves freely with what hangs on it.
+constexpr double smallest_pivot = 1e-6;
 
 Eigen::Matrix3d stiffness_of(const ContactNetwork& network, std::size_t entry) {
     const Vec3 n(network.nx[entry], network.ny[entry], network.nz[entry]);
@@ -24,40 +17,118 @@ Eigen::Matrix3d stiffness_of(const ContactNetwork& network, std::size_t entry) {
            (network.normal[entry] - network.tangential[entry]) * n * n.transpose();
 }
 
+/// Inverse of a pivot; zero along directions that are free, so that a cluster which hangs on nothing stays where its last particle is.
+Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace) {
+    const double floor = smallest_pivot * trace;
+    const Eigen::LLT<Eigen::Matrix3d> factor(pivot);
+    if (factor.info() == Eigen::Success && factor.matrixLLT().diagonal().array().square().minCoeff() > floor)
+        return factor.solve(Eigen::Matrix3d::Identity());
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(pivot);
+    const Vec3 values = modes.eigenvalues();
+    const Vec3 inverse = (values.array() > floor).select(values.cwiseInverse(), 0.0);
+    return modes.eigenvectors() * inverse.asDiagonal() * modes.eigenvectors().transpose();
+}
+
 }  // namespace
 
-void Preconditioner::factorise(const ContactNetwork& network, std::span<const Vec3> vectors) {
-    inverse_.assign(network.particles(), Eigen::Matrix3d::Zero());
-    std::vector<Eigen::Matrix3d> strain_parts(network.chunks().size(), Eigen::Matrix3d::Zero());
-    network.for_chunks([&](std::size_t index) {
-        const ContactNetwork::Chunk& chunk = network.chunks()[index];
-        const auto own = [&](std::int32_t particle) {
-            const auto row = static_cast<std::size_t>(particle);
-            return row >= chunk.first_particle && row < chunk.last_particle;
-        };
-        for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
-            if (network.first[entry] == network.second[entry]) continue;  // its own image: no relative motion but by strain
-            const Eigen::Matrix3d block = stiffness_of(network, entry);
-            for (const std::int32_t particle : {network.first[entry], network.second[entry]})
-                if (own(particle)) inverse_[static_cast<std::size_t>(particle)] += block;
+Preconditioner::Preconditioner(const ContactNetwork& network)
+    : row_begin_(network.particles() + 1, 0), place_(network.first.size(), 0), diagonal_(network.particles()), inverse_(network.particles()) {
+    for (const ContactNetwork::Chunk& chunk : network.chunks())
+        for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry)
+            ++row_begin_[static_cast<std::size_t>(network.second[entry]) + 1];
+    for (std::size_t row = 0; row < network.particles(); ++row) row_begin_[row + 1] += row_begin_[row];
+    column_.resize(row_begin_.back());
+    lower_.resize(row_begin_.back());
+    std::vector<std::size_t> next(row_begin_.begin(), row_begin_.end() - 1);
+    for (const ContactNetwork::Chunk& chunk : network.chunks())  // entries are sorted by their first particle, so rows come out sorted
+        for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry) {
+            place_[entry] = next[static_cast<std::size_t>(network.second[entry])]++;
+            column_[place_[entry]] = network.first[entry];
         }
-        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) inverse_[row] = pseudo_inverse(inverse_[row]);
+}
+
+void Preconditioner::assemble(const ContactNetwork& network, std::size_t index) {
+    const ContactNetwork::Chunk& chunk = network.chunks()[index];
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) diagonal_[row].setZero();
+    for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
+        if (network.first[entry] == network.second[entry]) continue;  // its own image: no relative motion but by strain
+        const Eigen::Matrix3d block = stiffness_of(network, entry);
+        for (const std::int32_t particle : {network.first[entry], network.second[entry]}) {
+            const auto row = static_cast<std::size_t>(particle);
+            if (row >= chunk.first_particle && row < chunk.last_particle) diagonal_[row] += block;
+        }
+        if (entry < chunk.first_only) lower_[place_[entry]] = -block.cast<float>();
+    }
+}
+
+void Preconditioner::eliminate(const ContactNetwork::Chunk& chunk) {
+    // Row by row: U_ji = A_ji - sum_k L_jk U_ik^T over the columns k that rows j and i share, L_ji = U_ji D_i^-1,
+    // D_j = A_jj - sum_i L_ji U_ji^T.
+    std::vector<Eigen::Matrix3d> upper;  // U of row j
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
+        const double trace = diagonal_[row].trace();
+        const std::size_t begin = row_begin_[row], end = row_begin_[row + 1];
+        upper.resize(end - begin);
+        for (std::size_t place = begin; place < end; ++place) {
+            const auto i = static_cast<std::size_t>(column_[place]);
+            Eigen::Matrix3d u = lower_[place].cast<double>();
+            for (std::size_t a = begin, b = row_begin_[i]; a < place && b < row_begin_[i + 1];) {
+                if (column_[a] == column_[b]) {
+                    u -= upper[a - begin] * lower_[b].cast<double>().transpose();
+                    ++a;
+                    ++b;
+                } else {
+                    column_[a] < column_[b] ? ++a : ++b;
+                }
+            }
+            upper[place - begin] = u;
+            lower_[place] = (u * inverse_[i].cast<double>()).cast<float>();
+            diagonal_[row] -= lower_[place].cast<double>() * u.transpose();
+        }
+        inverse_[row] = pivot_inverse(diagonal_[row], trace).cast<float>();
+    }
+}
+
+void Preconditioner::factorise_strain(const ContactNetwork& network, std::span<const Vec3> vectors) {
+    std::vector<Eigen::Matrix3d> parts(network.chunks().size(), Eigen::Matrix3d::Zero());
+    network.for_chunks([&](std::size_t index) {
         network.for_owned(index, [&](std::size_t entry) {
             const Vec3& l = vectors[static_cast<std::size_t>(network.pair[entry])];
-            strain_parts[index] += l.asDiagonal() * stiffness_of(network, entry) * l.asDiagonal();
+            parts[index] += l.asDiagonal() * stiffness_of(network, entry) * l.asDiagonal();
         });
     });
     Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
-    for (const Eigen::Matrix3d& part : strain_parts) strain += part;
-    strain_inverse_ = pseudo_inverse(strain);
+    for (const Eigen::Matrix3d& part : parts) strain += part;
+    strain_inverse_ = pivot_inverse(strain, strain.trace());
+}
+
+void Preconditioner::factorise(const ContactNetwork& network, std::span<const Vec3> vectors) {
+    // Stiffness is of the order of surface energy over strain, J/m2, at any particle size: well inside the range of single precision.
+    network.for_chunks([&](std::size_t index) {
+        assemble(network, index);
+        eliminate(network.chunks()[index]);
+    });
+    factorise_strain(network, vectors);
 }
 
 void Preconditioner::apply(const ContactNetwork& network, const Motion& r, Motion& z) const {
     network.for_chunks([&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network.chunks()[index];
+        double* out = z.displacement.data();
+        const auto at = [&](std::size_t row) { return Eigen::Map<Vec3>(out + 3 * row); };
         for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
-            const Eigen::Map<const Vec3> residual(&r.displacement[3 * row]);
-            Eigen::Map<Vec3>(&z.displacement[3 * row]) = inverse_[row] * residual;
+            Vec3 value = Eigen::Map<const Vec3>(&r.displacement[3 * row]);
+            for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place)
+                value -= lower_[place].cast<double>() * at(static_cast<std::size_t>(column_[place]));
+            at(row) = value;
+        }
+        for (std::size_t row = chunk.last_particle; row-- > chunk.first_particle;) {
+            at(row) = inverse_[row].cast<double>() * at(row).eval();
+        }
+        for (std::size_t row = chunk.last_particle; row-- > chunk.first_particle;) {
+            const Vec3 value = at(row);
+            for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place)
+                at(static_cast<std::size_t>(column_[place])) -= lower_[place].cast<double>().transpose() * value;
         }
     });
     z.strain = strain_inverse_ * r.strain;

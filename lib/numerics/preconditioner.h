@@ -8,9 +8,12 @@
 
 namespace kiln::numerics {
 
-/// Inverse of the 3x3 diagonal block of every particle, and of the block of the box's strains.
+/// Incomplete block factorisation L D L^T without fill, IC(0), of the 3x3 blocks inside each chunk; contacts between chunks count on
+/// the diagonal only. The strains of the box have their own block. Exact for a chunk whose contacts form trees, as in loose packings.
 class Preconditioner {
    public:
+    explicit Preconditioner(const ContactNetwork& network);
+
     /// Takes the network's present stiffness. vectors: l of each pair, m.
     void factorise(const ContactNetwork& network, std::span<const Vec3> vectors);
 
@@ -18,7 +21,16 @@ class Preconditioner {
     void apply(const ContactNetwork& network, const Motion& r, Motion& z) const;
 
    private:
-    std::vector<Eigen::Matrix3d> inverse_;
+    void assemble(const ContactNetwork& network, std::size_t chunk);
+    void eliminate(const ContactNetwork::Chunk& chunk);
+    void factorise_strain(const ContactNetwork& network, std::span<const Vec3> vectors);
+
+    std::vector<std::size_t> row_begin_;     // blocks of a particle's row, left of the diagonal
+    std::vector<std::int32_t> column_;       // ascending in a row
+    std::vector<std::size_t> place_;         // of each entry that joins two particles of a chunk, its block
+    std::vector<Eigen::Matrix3f> lower_;     // L; half the memory traffic in single precision, and still symmetric
+    std::vector<Eigen::Matrix3d> diagonal_;  // of the network, then D
+    std::vector<Eigen::Matrix3f> inverse_;   // of D
     Eigen::Matrix3d strain_inverse_ = Eigen::Matrix3d::Zero();
 };
 

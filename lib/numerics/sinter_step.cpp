@@ -10,16 +10,26 @@ namespace kiln::numerics {
 namespace {
 
 constexpr int most_newton = 60;
+constexpr int most_searches = 12;
 constexpr int most_conjugate_gradients = 5000;
 constexpr double overshoot = 0.5;          // slope left at the end of a Newton step, relative to its start, that asks for a line search
+constexpr double least_tangent = 0.1;      // of the tangent at a pair's own end of the step
 constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
 constexpr double tightest_linear = 1e-3;
+constexpr double predictor_tolerance = 10.0;  // of the first-order solution, over that of the step
+constexpr double corrector_linear = 0.05;  // tolerance of the first linear solve that starts from the first-order solution
 
 /// Share of the step in which a pair touches, by linear change of the overlap.
 double touching_share(double start, double end) {
     if (start >= 0.0 && end >= 0.0) return 1.0;
     if (start < 0.0 && end < 0.0) return 0.0;
     return std::max(start, end) / std::abs(end - start);
+}
+
+/// Overlap at the end of the step of a pair that nothing else holds, under its share of the sintering force, m.
+double alone(const PairStep& pair, double share) {
+    const double start = std::max(0.0, pair.overlap);
+    return std::cbrt(start * start * start + 3.0 * share * pair.force / pair.cubic);
 }
 
 /// Representative of a particle's cluster, with path halving.
@@ -37,6 +47,7 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       settings_(settings),
       network_(box, position, pairs),
       solver_(position.size()),
+      preconditioner_(network_),
       normals_(pairs.size()),
       vectors_(pairs.size()),
       share_(pairs.size()),
@@ -58,9 +69,9 @@ void SinterStep::start_geometry(const std::vector<PairStep>& step) {
         vectors_[row] = pair.vector;
         normals_[row] = pair.vector / pair.distance;
         share_[row] = pair.overlap >= 0.0 ? 1.0 : 0.0;
-        tangential_[row] = pair.diffusion > 0.0
-                               ? physics::tangential_viscosity(settings_.constants, pair.overlap, pair.reduced_radius) / pair.diffusion
-                               : 0.0;
+        // Mean overlap of the step as the pair alone would have it: at its start a new contact has no neck to resist shear.
+        const double mean_overlap = share_[row] * 0.5 * (pair.overlap + alone(pair, share_[row]));
+        tangential_[row] = physics::tangential_viscosity(settings_.constants, mean_overlap, pair.reduced_radius) / pair.diffusion;
     }
 }
 
@@ -73,13 +84,11 @@ void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Moti
         normals_[row] = (pair.vector + end).normalized();
         share_[row] = touching_share(pair.overlap, end_overlap);
         const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0)) * share_[row];
-        tangential_[row] = pair.diffusion > 0.0
-                               ? physics::tangential_viscosity(settings_.constants, mean_overlap, pair.reduced_radius) / pair.diffusion
-                               : 0.0;
+        tangential_[row] = physics::tangential_viscosity(settings_.constants, mean_overlap, pair.reduced_radius) / pair.diffusion;
     }
 }
 
-void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool pair_exact) {
+void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant) {
     ContactNetwork& network = network_;
     network.for_chunks([&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network.chunks()[index];
@@ -96,18 +105,14 @@ void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion,
         const PairStep& pair = step[row];
         const Vec3& n = normals_[row];
         const double along = n.dot(du);  // opening
-        double reached = std::max(0.0, pair.overlap - along);
+        const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap - along);
         const double force = share_[row] * pair.force;
-        if (pair_exact) {  // tangent where the pair alone would end, so that contacts without overlap have a stiffness
-            const double start = std::max(0.0, pair.overlap);
-            reached = std::cbrt(start * start * start + 3.0 * force / pair.cubic);
-            const double stiffness = pair.cubic * reached * reached;
-            network.normal[entry] = stiffness;
-            return (stiffness * (along + reached - start)) * n + tangential_[row] * (du - along * n);
-        }
-        const double start = std::max(0.0, pair.overlap);
         const double resistance = pair.cubic / 3.0 * (reached * reached * reached - start * start * start);
-        network.normal[entry] = pair.cubic * reached * reached;
+        // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least a
+        // part of the tangent there.
+        const double goal = alone(pair, share_[row]);
+        const double least = secant ? (goal * goal + goal * reached + reached * reached) / 3.0 : least_tangent * goal * goal;
+        network.normal[entry] = pair.cubic * std::max(reached * reached, reached < goal ? least : 0.0);
         return (force - resistance) * n + tangential_[row] * (du - along * n);
     });
     for (int axis = 0; axis < 3; ++axis) unbalanced.strain[axis] += settings_.pressure[axis] * box_.volume();
@@ -122,10 +127,32 @@ void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion,
     }) - settings_.pressure.dot(motion.strain) * box_.volume();
 }
 
-bool SinterStep::newton(const std::vector<PairStep>& step, bool guessed, Motion& motion, StepReport& report) {
-    forces(step, motion, unbalanced_, !guessed);
-    double linear_tolerance = guessed ? 0.01 : loosest_linear;
-    bool exact_start = !guessed;
+double SinterStep::line_search(const std::vector<PairStep>& step, double slope, Motion& motion) {
+    double length = 1.0, low = 0.0, low_slope = -slope, high = 1.0, high_slope = dot(network_, unbalanced_, direction_);
+    if (high_slope <= overshoot * slope) return length;
+    for (int search = 0; search < most_searches; ++search) {  // regula falsi on the slope; a convex function has one zero of it
+        const double share = std::clamp(-low_slope / (high_slope - low_slope), 0.1, 0.9);
+        const double next = low + share * (high - low);
+        add(network_, next - length, direction_, motion);
+        length = next;
+        forces(step, motion, unbalanced_, false);
+        const double left = dot(network_, unbalanced_, direction_);
+        if (std::abs(left) <= overshoot * slope) break;
+        if (left > 0.0) {
+            high = length;
+            high_slope = left;
+        } else {
+            low = length;
+            low_slope = left;
+            high_slope *= 0.5;  // an end that stays counts half, else the other end hardly moves
+        }
+    }
+    return length;
+}
+
+bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion,
+                        StepReport& report) {
+    forces(step, motion, unbalanced_, true);
     for (int iteration = 0; iteration < most_newton; ++iteration) {
         preconditioner_.factorise(network_, vectors_);
         unbalanced_.strain *= -1.0;
@@ -138,26 +165,12 @@ bool SinterStep::newton(const std::vector<PairStep>& step, bool guessed, Motion&
         if (!(slope > 0.0)) return true;
         add(network_, 1.0, direction_, motion);
         forces(step, motion, unbalanced_, false);
-        if (exact_start) {
-            exact_start = false;
-            continue;
-        }
-        double length = 1.0, low = 0.0;
-        double left = dot(network_, unbalanced_, direction_);
-        double low_slope = -slope;
-        for (int search = 0; left > overshoot * slope && search < 30; ++search) {  // the convex function has a minimum before this
-            const double high = length;
-            double next = low + (high - low) * (-low_slope) / (left - low_slope);
-            next = std::clamp(next, low + 0.1 * (high - low), high - 0.1 * (high - low));
-            add(network_, next - length, direction_, motion);
-            length = next;
-            forces(step, motion, unbalanced_, false);
-            left = dot(network_, unbalanced_, direction_);
-        }
+        const double length = line_search(step, slope, motion);
         const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
         const double now = length < 1.0 ? error : (linear.residual + error) * error;
-        if (now < settings_.solver_tolerance) return true;
-        linear_tolerance = std::clamp(0.3 * settings_.solver_tolerance / error, tightest_linear, loosest_linear);
+        if (getenv("DBG")) fprintf(stderr, "# newton %d lin %d tol %.1e res %.1e error %.2e length %.2f now %.2e\n", iteration, linear.iterations, linear_tolerance, linear.residual, error, length, now);
+        if (now < tolerance) return true;
+        linear_tolerance = std::clamp(std::max(now, 0.5 * tolerance / now), tightest_linear, loosest_linear);
     }
     return false;
 }
@@ -184,17 +197,16 @@ void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion)
     }
 }
 
-StepReport SinterStep::solve(const std::vector<PairStep>& step, const Motion* guess, Motion& motion, Motion* first_order) {
+StepReport SinterStep::solve(const std::vector<PairStep>& step, Motion& motion, Motion& first_order) {
     StepReport report;
-    motion = guess ? *guess : Motion(network_.particles());
-    mask(motion, settings_.free_axis);
+    motion = Motion(network_.particles());
     start_geometry(step);
-    report.converged = newton(step, guess != nullptr, motion, report);
+    report.converged = newton(step, predictor_tolerance * settings_.solver_tolerance, loosest_linear, motion, report);
     remove_drift(step, motion);
-    if (first_order) *first_order = motion;
+    first_order = motion;
     if (!settings_.second_order) return report;
     midpoint_geometry(step, motion);
-    report.converged = newton(step, true, motion, report) && report.converged;
+    report.converged = newton(step, settings_.solver_tolerance, corrector_linear, motion, report) && report.converged;
     remove_drift(step, motion);
     return report;
 }

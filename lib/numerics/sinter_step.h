@@ -48,18 +48,17 @@ class SinterStep {
    public:
     SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings);
 
-    /// Motion over the step of the given pair data (a row a pair). guess: motion to start from, or nothing.
-    /// first_order: if given, receives the motion of the first-order solution.
-    StepReport solve(const std::vector<PairStep>& step, const Motion* guess, Motion& motion, Motion* first_order);
-
-    /// Relative motion of pair `row` under a motion, m.
-    Vec3 relative(std::size_t row, const Motion& motion, const Vec3& vector) const;
+    /// Motion over the step of the given pair data (a row a pair); `first_order` receives that of the first-order solution, on the way.
+    StepReport solve(const std::vector<PairStep>& step, Motion& motion, Motion& first_order);
 
    private:
+    /// Relative motion of pair `row` under a motion, m.
+    Vec3 relative(std::size_t row, const Motion& motion, const Vec3& vector) const;
     void start_geometry(const std::vector<PairStep>& step);
     void midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion);
-    bool newton(const std::vector<PairStep>& step, bool guessed, Motion& motion, StepReport& report);
-    void forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool pair_exact);
+    bool newton(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion, StepReport& report);
+    double line_search(const std::vector<PairStep>& step, double slope, Motion& motion);
+    void forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant);
     void remove_drift(const std::vector<PairStep>& step, Motion& motion) const;
 
     Box box_;

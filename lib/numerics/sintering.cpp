@@ -131,17 +131,9 @@ double Sintering::closing_bound(const Motion& motion) const {
 }
 
 Sintering::Trial Sintering::attempt(double duration, bool tight) {
-    const bool guessed = last_duration_ > 0.0;
-    const double scale = guessed ? duration / last_duration_ : 0.0;
-    Motion guess;
-    if (guessed) {
-        guess = last_motion_;
-        for (double& component : guess.displacement) component *= scale;
-        guess.strain *= scale;
-    }
     StepSettings settings = settings_.step;
     if (tight) settings.solver_tolerance *= 1e-2;
-    double closing = guessed ? 1.2 * closing_bound(guess) : 0.5 * margin_left_;
+    double closing = last_duration_ > 0.0 ? 1.2 * last_closing_ * std::max(1.0, duration / last_duration_) : 0.5 * margin_left_;
     for (;;) {
         if (margin_left_ < closing) find_pairs_with_margin(closing);
         std::vector<Pair> active;
@@ -153,7 +145,7 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
         }
         SinterStep solver(state_.box, state_.particles.position, active, settings);
         Trial trial;
-        trial.report = solver.solve(steps, guessed ? &guess : nullptr, trial.motion, &trial.first_order);
+        trial.report = solver.solve(steps, trial.motion, trial.first_order);
         const double reached = closing_bound(trial.motion);
         if (reached > closing) {  // pairs that were left out might have come to touch
             closing = 1.2 * reached;
@@ -199,7 +191,7 @@ void Sintering::apply(const Trial& trial, double duration) {
     state_.time += duration;
     density_ = kiln::relative_density(state_);
     margin_left_ -= trial.closing;
-    last_motion_ = trial.motion;
+    last_closing_ = trial.closing;
     last_duration_ = duration;
 }
 

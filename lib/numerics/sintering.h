@@ -72,7 +72,7 @@ class Sintering {
     std::vector<Pair> pairs_;
     double margin_left_ = -1.0;        // closing that the list of pairs still covers, m
     double largest_radius_ = 0.0;      // m
-    Motion last_motion_;
+    double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m
     double last_duration_ = 0.0, next_duration_ = 0.0;
     double density_ = 0.0, error_ = 0.0;
     Vec3 strain_ = Vec3::Zero();
