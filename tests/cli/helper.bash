@@ -1,0 +1,15 @@
+# helper.bash: what every Bats file loads: assertions, the programs (from the environment, else from build/bin), a comparison of numbers.
+load /usr/lib/bats/bats-support/load
+load /usr/lib/bats/bats-assert/load
+
+ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
+: "${SINTER:=$ROOT/build/bin/sinter}" "${BONDIFY:=$ROOT/build/bin/bondify}"
+: "${BEND:=$ROOT/build/bin/bend}" "${ANALYZE:=$ROOT/build/bin/analyze}" "${PYTHON:=/usr/bin/python3}"
+export SINTER BONDIFY BEND ANALYZE PYTHON
+
+# near A B TOLERANCE: fails, and says so, unless |A - B| <= TOLERANCE |B|.
+near() {
+    awk -v a="$1" -v b="$2" -v tolerance="$3" \
+        'BEGIN { d = a - b; if (d < 0) d = -d; m = b < 0 ? -b : b; exit !(d <= tolerance * m) }' ||
+        fail "$1 is not within $3 of $2"
+}
