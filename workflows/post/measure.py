@@ -1,4 +1,5 @@
-"""measure.py: runs one stage and writes its wall time, processor time and peak memory to a file; the stage's exit status stays."""
+"""measure.py: runs the stage that makes a file, says how long it took, and writes wall time, processor time (s) and peak memory (MB)
+to FILE.time; the exit status is the stage's."""
 import resource
 import signal
 import subprocess
@@ -10,8 +11,8 @@ KIB = 1024  # bytes; Linux counts memory in KiB
 
 def main():
     if len(sys.argv) < 3:
-        sys.exit("usage: measure.py RECORD COMMAND [ARGUMENT…]")
-    record, command = sys.argv[1], sys.argv[2:]
+        sys.exit("usage: measure.py FILE COMMAND [ARGUMENT…]")
+    made, command = sys.argv[1], sys.argv[2:]
     start = time.monotonic()
     stage = subprocess.Popen(command)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the stage has it too, and decides
@@ -19,8 +20,11 @@ def main():
     status = stage.wait()
     wall = time.monotonic() - start
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    with open(record, "w", encoding="utf-8") as file:
-        file.write(f"{wall:.2f}\t{used.ru_utime + used.ru_stime:.2f}\t{used.ru_maxrss * KIB / 1e6:.0f}\n")
+    peak = used.ru_maxrss * KIB / 1e6
+    with open(made + ".time", "w", encoding="utf-8") as file:
+        file.write(f"{wall:.2f}\t{used.ru_utime + used.ru_stime:.2f}\t{peak:.0f}\n")
+    if status == 0:
+        print(f"{wall:8.1f} s {peak:6.0f} MB  {made}", file=sys.stderr)
     sys.exit(status if status >= 0 else 128 - status)
 
 
