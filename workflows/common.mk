@@ -6,7 +6,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
-MAKEFLAGS += --no-builtin-rules
+MAKEFLAGS += --no-builtin-rules --no-print-directory
 
 ROOT    := $(abspath $(dir $(lastword $(MAKEFILE_LIST)))/..)
 POST    := $(ROOT)/workflows/post
