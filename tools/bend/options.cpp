@@ -1,8 +1,9 @@
 // options.cpp: the options of bend, their help and what must not be combined.
 #include "tools/bend/options.h"
 
-#include <map>
+#include <utility>
 
+#include "cli/bond_model.h"
 #include "cli/units.h"
 
 namespace kiln::bend {
@@ -17,21 +18,10 @@ constexpr const char* description =
 
 constexpr const char* footer =
     "Static: bonds are springs, particles touch the cylinders by Hertz's law and part from them freely; there is no friction.\n"
-    "Bond laws: series, bond and truncated spheres; neck, the bond alone between rigid spheres; centre, a cylinder from centre to "
-    "centre.\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
     "  bend --span 8um --punch-radius 2um --max-force 60uN --states bent.kiln bonded.kiln -o bend.json\n"
     "  for law in series neck centre; do bend --bond-law $law bonded.kiln; done | analyze modulus --table";
-
-template <typename Value>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& target, const std::map<std::string, Value>& choices,
-                        const std::string& default_text, const std::string& help) {
-    return app
-        .add_option_function<std::string>(name, [&target, choices](const std::string& text) { target = choices.at(text); }, help)
-        ->check(CLI::IsMember(choices))
-        ->default_str(default_text);
-}
 
 }  // namespace
 
@@ -50,15 +40,10 @@ void Options::add_to(CLI::App& app) {
     app.add_option("--points", points, "points of the curve in each branch, at equal steps of force")
         ->check(CLI::Range(3, 1000))
         ->capture_default_str();
-    add_choice(app, "--bond-law", model.law,
-               {{"series", physics::BondLaw::series}, {"neck", physics::BondLaw::neck}, {"centre", physics::BondLaw::centre}},
-               "series", "what is elastic between two centres");
-    add_choice(app, "--bond-shear", model.shear,
-               {{"section", physics::BondShear::section}, {"timoshenko", physics::BondShear::timoshenko}}, "section",
-               "what yields to a transverse force: the sections' shear, or Timoshenko's beam");
+    cli::add_bond_model(app, model);
     app.add_option("--tolerance", tolerance, "unbalanced force over contact force at which an equilibrium is reached (plain number)")
         ->check(CLI::Range(1e-14, 1e-2))
-        ->default_str("1e-8");
+        ->default_str("1e-6");
     app.add_option("--states", states, "also write the bar bent by the greatest force, with the forces in its bonds, to this file")
         ->type_name("FILE");
     app.callback([this, &app] {

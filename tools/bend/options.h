@@ -16,7 +16,7 @@ struct Options {
     double max_force = 0.0;       // N
     int cycles = 3;
     int points = 6;  // of a branch
-    double tolerance = 1e-8;
+    double tolerance = 1e-6;
     mechanics::BondModel model;
     std::string states;  // file of the deformed states; empty for none
 

@@ -1,0 +1,30 @@
+// elastic_tensor.h: elastic constants of a periodic cell of bonded particles.
+#pragma once
+
+#include "mechanics/bond_network.h"
+
+namespace kiln::mechanics {
+
+/// Stiffness in Voigt's notation, Pa: xx, yy, zz, yz, xz, xy; shear strains as in engineering, twice the tensor's.
+struct ElasticTensor {
+    Mat6 stiffness;      // of the cell in equilibrium
+    Mat6 affine;         // particles moved by the uniform strain and not turned: an upper bound
+    int iterations = 0;  // of all six solves
+    double residual = 0.0;
+    bool converged = true;
+};
+
+/// Six uniform strains of a periodic network in a cell of the given volume, m3, solved one by one with the same preconditioner.
+ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance);
+
+/// What a tensor means for a body without texture.
+struct IsotropicAverage {
+    double young_modulus, shear_modulus, bulk_modulus;  // Pa, of Voigt's average: the same strain in all directions
+    double poisson_ratio;
+    double anisotropy;  // 0 for an isotropic tensor: 5 G_V/G_R + K_V/K_R - 6 (Ranganathan & Ostoja-Starzewski 2008)
+};
+
+/// Throws Error for a tensor that is not positive definite.
+IsotropicAverage isotropic_average(const Mat6& stiffness);
+
+}  // namespace kiln::mechanics

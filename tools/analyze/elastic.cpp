@@ -1,0 +1,92 @@
+// elastic.cpp: elastic tensor of periodic states of bonded particles.
+#include <algorithm>
+
+#include "cli/bond_model.h"
+#include "io/state_io.h"
+#include "mechanics/elastic_tensor.h"
+#include "tools/analyze/analyze.h"
+#include "tools/analyze/report.h"
+
+namespace kiln::analyze {
+
+namespace {
+
+constexpr const char* footer =
+    "Keys: relative_density, stiffness (6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear), young_modulus (Pa) and poisson_ratio of "
+    "its isotropic (Voigt) average, anisotropy (0 for an isotropic tensor; Ranganathan & Ostoja-Starzewski 2008), affine (the same "
+    "for particles that follow the strain: an upper bound), bond_law, iterations, residual, fragments, rattlers.\n"
+    "Examples:\n"
+    "  bondify sintered.kiln | analyze elastic --table\n"
+    "  analyze elastic --bond-law neck bonded.kiln | jq .young_modulus";
+
+const std::vector<Column> columns{{"relative_density", "relative density", ""},
+                                  {"young_modulus", "Young's modulus", "Pa"},
+                                  {"poisson_ratio", "Poisson's ratio", ""},
+                                  {"anisotropy", "anisotropy", ""},
+                                  {"affine_young_modulus", "affine bound", "Pa"},
+                                  {"bond_law", "bond law", ""},
+                                  {"iterations", "iterations", ""}};
+
+Json rows_of(const mechanics::Mat6& matrix) {
+    Json rows = Json::array();
+    for (int row = 0; row < 6; ++row) rows.push_back(std::vector<double>(matrix.row(row).begin(), matrix.row(row).end()));
+    return rows;
+}
+
+Json elastic_of(const State& state, const mechanics::BondModel& model, double tolerance, bool& converged) {
+    const auto& periodic = state.box.periodic;
+    if (!std::all_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; }))
+        throw Error("the box is not periodic along all axes, so the state has no elastic tensor; bend tests bodies with free faces");
+    const mechanics::BondedBody body = mechanics::bonded_body(state, model);
+    const mechanics::ElasticTensor tensor = mechanics::elastic_tensor(body.network, state.box.volume(), tolerance);
+    const mechanics::IsotropicAverage average = mechanics::isotropic_average(tensor.stiffness);
+    const mechanics::IsotropicAverage affine = mechanics::isotropic_average(tensor.affine);
+    converged = converged && tensor.converged;
+    return {{"format", "dem-elastic"},
+            {"version", io::format_version},
+            {"relative_density", relative_density(state)},
+            {"bond_law", physics::name_of(model.law)},
+            {"bond_shear", physics::name_of(model.shear)},
+            {"young_modulus", average.young_modulus},
+            {"poisson_ratio", average.poisson_ratio},
+            {"shear_modulus", average.shear_modulus},
+            {"bulk_modulus", average.bulk_modulus},
+            {"anisotropy", average.anisotropy},
+            {"stiffness", rows_of(tensor.stiffness)},
+            {"affine", rows_of(tensor.affine)},
+            {"affine_young_modulus", affine.young_modulus},
+            {"iterations", tensor.iterations},
+            {"residual", tensor.residual},
+            {"converged", tensor.converged},
+            {"fragments", body.fragments},
+            {"fragment_particles", body.fragment_particles},
+            {"rattlers", body.rattlers},
+            {"negligible_bonds", body.negligible_bonds}};
+}
+
+}  // namespace
+
+int elastic(int argc, char** argv) {
+    cli::Common common;
+    bool table = false;
+    double tolerance = 1e-8;
+    mechanics::BondModel model;
+    CLI::App app{"Elastic tensor of every state: a periodic cell of bonded particles under six uniform strains.", "analyze elastic"};
+    app.footer(footer);
+    add_table(app, table);
+    cli::add_bond_model(app, model);
+    app.add_option("--tolerance", tolerance, "unbalanced force over load at which a solve ends (plain number)")
+        ->check(CLI::Range(1e-14, 1e-2))
+        ->default_str("1e-8");
+    common.add_to(app);
+    cli::parse(app, argc, argv, common);
+
+    io::Input input(common.files);
+    Report report(common, table, columns);
+    bool converged = true;
+    while (const auto state = input.next_state()) report.add(elastic_of(*state, model, tolerance, converged));
+    report.finish();
+    return converged ? cli::done : cli::not_converged;
+}
+
+}  // namespace kiln::analyze
