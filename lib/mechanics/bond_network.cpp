@@ -121,19 +121,22 @@ BondedBody bonded_body(const State& state, const BondModel& model) {
     if (!state.bonds || state.bonds->size() == 0) throw Error("the state has no bonds; run bondify first");
     const std::vector<Moduli> moduli = moduli_of(state.materials);
     const std::vector<std::int32_t> carrying = carrying_bonds(state);
+    if (carrying.empty()) throw Error("no bond of the state is thick enough to carry a load");
     std::vector<std::array<std::int32_t, 2>> pairs;
     for (const std::int32_t row : carrying) pairs.push_back(state.bonds->pair[at(row)]);
     const Pieces pieces = find_pieces(along_x(state.particles), pairs);
     const std::size_t largest = pieces.largest();
-    if (pieces.size(largest) < 2) throw Error("no bond of the state is thick enough to carry a load");
 
     BondedBody body;
     body.negligible_bonds = state.bonds->size() - carrying.size();
     for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
-        if (pieces.size(piece) == 1) ++body.rattlers;
-        if (pieces.size(piece) == 1 || piece == largest) continue;
-        ++body.fragments;
-        body.fragment_particles += pieces.size(piece);
+        if (piece == largest) continue;
+        if (pieces.size(piece) == 1) {
+            ++body.rattlers;
+        } else {
+            ++body.fragments;
+            body.fragment_particles += pieces.size(piece);
+        }
     }
     double radii = 0.0;
     std::vector<std::int32_t> node_of(state.particles.size(), -1);

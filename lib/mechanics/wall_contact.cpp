@@ -143,30 +143,28 @@ Vector ContactProblem::combine(bool forces) const {
     return sum;
 }
 
-/// Adds the body's response to unbalanced forces to the space, made orthogonal in energy to what is there.
+/// Adds the body's response to unbalanced forces to the space, orthogonal in energy to the fields there and free of rigid motion.
 void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     Field field;
     iterations += solver_.solve(unbalanced, field.displacement, response_tolerance).iterations;
-    solver_.forces(field.displacement, field.force);
-    const double all = dot(field.displacement, field.force);
+    const double all = dot(field.displacement, unbalanced);
     for (int pass = 0; pass < 2; ++pass) {
         for (const Field& other : fields_) {
-            if (other.force.empty()) continue;
-            const double share = dot(field.displacement, other.force) / other.stiffness;
+            const bool rigid = other.force.empty();
+            const double share = rigid ? dot(field.displacement, other.displacement) / dot(other.displacement, other.displacement)
+                                       : dot(field.displacement, other.force) / other.stiffness;
             add(-share, other.displacement, field.displacement);
-            add(-share, other.force, field.force);
         }
     }
-    field.stiffness = dot(field.displacement, field.force);
-    if (!(field.stiffness > least_novelty * all)) return;
     double largest = 0.0;
     for (const WallContact& contact : contacts_) {
         largest = std::max(largest, std::abs(field.displacement[at(contact.node)][2]));
     }
+    if (!(largest > 0.0)) return;
     for (Vec6& each : field.displacement) each /= largest;
-    for (Vec6& each : field.force) each /= largest;
-    field.stiffness /= largest * largest;
-    add_field(std::move(field));
+    solver_.forces(field.displacement, field.force);
+    field.stiffness = dot(field.displacement, field.force);
+    if (field.stiffness * largest * largest > least_novelty * all) add_field(std::move(field));
 }
 
 double ContactProblem::seat(double force) {
