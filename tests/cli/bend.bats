@@ -1,0 +1,116 @@
+# bend.bats: the command line contract of bend and analyze elastic.
+bats_require_minimum_version 1.5.0
+load helper
+
+setup_file() {
+    load helper
+    export BAR="$BATS_FILE_TMPDIR/bar.kiln" TWO="$BATS_FILE_TMPDIR/two.kiln"
+    "$SINTER" green -n 800 --diameter 100nm --density 0.58 --compact-to 0.75 --aspect 5:1:1 --seed 3 | "$BONDIFY" -q -o "$BAR"
+    cat "$BAR" "$BAR" >"$TWO"
+}
+
+# lattice NX NY NZ: a text state of touching spheres 100 nm apart with a bond of 50 nm between neighbours; the box is not periodic.
+lattice() {
+    "$PYTHON" - "$@" <<'PROGRAM'
+import json, sys
+n = [int(word) for word in sys.argv[1:4]]
+places = [(x, y, z) for x in range(n[0]) for y in range(n[1]) for z in range(n[2])]
+row = {place: i for i, place in enumerate(places)}
+pairs = [[row[p], row[q]] for p in places for k in range(3) if (q := tuple(c + (a == k) for a, c in enumerate(p))) in row]
+flat = lambda rows: [value for each in rows for value in each]
+array = lambda kind, data, *shape: {"type": kind, "shape": list(shape), "data": data}
+N, M = len(places), len(pairs)
+print(json.dumps({
+    "format": "dem-state", "version": 1, "units": "SI",
+    "box": {"origin": [0, 0, 0], "vectors": [[n[0] * 1e-7, 0, 0], [0, n[1] * 1e-7, 0], [0, 0, n[2] * 1e-7]], "periodic": [False] * 3},
+    "materials": [{"name": "alumina", "young_modulus": 4e11, "poisson_ratio": 0.23}],
+    "particles": {"position": array("f8", [1e-7 * (c + 0.5) for c in flat(places)], N, 3), "radius": array("f8", [5e-8] * N, N)},
+    "bonds": {"pair": array("i4", flat(pairs), M, 2), "radius": array("f8", [2.5e-8] * M, M), "length": array("f8", [1.34e-8] * M, M)}}))
+PROGRAM
+}
+
+@test "a result has the keys of the format, one line a state" {
+    run -0 --separate-stderr "$BEND" --cycles 2 --points 4 "$TWO"
+    assert_equal "${#lines[@]}" 2
+    assert_equal "${lines[0]}" "${lines[1]}"
+    jq -e '.format == "dem-bend" and .version == 1 and .method == "static" and .bond_law == "series" and .young_modulus == 4e11
+           and .poisson_ratio == 0.23 and .dropped_bonds > 0 and .rattlers >= 0 and .fragments >= 0 and .residual <= 1e-6
+           and .iterations > 0 and .energy.error < 0.01 and (.curve | .deflection, .punch, .force | length == 17)
+           and (.history | length) == 3 and .history[2].tool == "bend"' <<<"${lines[0]}"
+    near "$(jq .span <<<"${lines[0]}")" "$(jq '0.8 * .length' <<<"${lines[0]}")" 1e-12
+    near "$(jq '.curve.deflection | max' <<<"${lines[0]}")" "$(jq '.height / 1000' <<<"${lines[0]}")" 1e-5
+    near "$(jq .relative_density <<<"${lines[0]}")" 0.75 1e-6
+}
+
+@test "--max-force is the greatest force, and unloading ends at zero" {
+    run -0 --separate-stderr "$BEND" --max-force 200nN --span 1.2um --punch-radius 0.5um "$BAR"
+    near "$(jq '.curve.force | max' <<<"$output")" 2e-7 1e-12
+    near "$(jq .span <<<"$output")" 1.2e-6 1e-12
+    near "$(jq .punch_radius <<<"$output")" 5e-7 1e-12
+    assert_equal "$(jq -c '.curve | [.force[-1], .deflection[-1]]' <<<"$output")" "[0,0]"
+}
+
+@test "neck is stiffer than series, series than centre" {
+    for law in neck series centre; do
+        "$BEND" --bond-law $law --max-deflection 0.1nm "$BAR" | jq '.curve.force | max'
+    done >"$BATS_TEST_TMPDIR/forces"
+    run -0 sort -g -r -c "$BATS_TEST_TMPDIR/forces"
+}
+
+@test "the same bytes for any number of threads" {
+    "$BEND" --threads 1 --states "$BATS_TEST_TMPDIR/one.kiln" "$BAR" -o "$BATS_TEST_TMPDIR/one.json"
+    "$BEND" --threads 3 --states "$BATS_TEST_TMPDIR/three.kiln" "$BAR" -o "$BATS_TEST_TMPDIR/three.json"
+    sed -i 's/"--states","[^"]*"//' "$BATS_TEST_TMPDIR"/*.json
+    run -0 cmp "$BATS_TEST_TMPDIR/one.json" "$BATS_TEST_TMPDIR/three.json"
+}
+
+@test "--states is a state with the forces in its bonds, which other tools read" {
+    "$BEND" --states "$BATS_TEST_TMPDIR/bent.kiln" --text "$BAR" -o "$BATS_TEST_TMPDIR/result.json"
+    run -0 jq -e '.bonds as $b | ($b.pair.shape[0]) as $m | $b.force.shape == [$m, 3] and $b.moment.shape == [$m, 3]
+                  and $b.normal_force.shape == [$m] and .particles.displacement.shape == .particles.position.shape' "$BATS_TEST_TMPDIR/bent.kiln"
+    run -0 "$ANALYZE" bonds "$BATS_TEST_TMPDIR/bent.kiln"
+}
+
+@test "the bent bar feeds analyze modulus" {
+    run -0 bash -c '"$BEND" "$BAR" | "$ANALYZE" modulus | jq -e ".young_modulus > 2e10 and .young_modulus < 4e11"'
+}
+
+@test "analyze elastic: a tensor per state, below its affine bound" {
+    run -0 --separate-stderr "$ANALYZE" elastic "$TWO"
+    assert_equal "${#lines[@]}" 2
+    jq -e '.format == "dem-elastic" and .bond_law == "series" and (.stiffness | length == 6) and .young_modulus < .affine_young_modulus
+           and .young_modulus > 5e10 and .poisson_ratio > 0 and .poisson_ratio < 0.4 and .anisotropy >= 0' <<<"${lines[0]}"
+    run -1 bash -c '"$0" elastic < <("$1")' "$ANALYZE" false
+}
+
+@test "a state without bonds, a span too long, cylinders that meet nothing: one sentence, status 1, no output" {
+    lattice 20 3 3 >"$BATS_TEST_TMPDIR/lattice.json"
+    run -1 bash -c '"$SINTER" green -n 50 --density 0.4 | "$BEND" -o "$1"' - "$BATS_TEST_TMPDIR/none.json"
+    assert_output --partial "run bondify first"
+    assert [ ! -e "$BATS_TEST_TMPDIR/none.json" ]
+    run -1 "$BEND" --span 2um "$BATS_TEST_TMPDIR/lattice.json"
+    assert_output --partial "not shorter than the bar"
+    run -1 "$BEND" --punch-radius 1nm --span 1.5um "$BATS_TEST_TMPDIR/lattice.json"
+    assert_output --partial "touches no particle"
+}
+
+@test "a bar in two pieces is refused" {
+    # Nine particles in a slice: the bonds from the thirteenth slice to the next one get no radius.
+    lattice 20 3 3 | jq -c '.bonds |= (.pair.data as $p | .radius.data |= [range(length) as $i |
+        if ($p[2 * $i] / 9 | floor) == 12 and $p[2 * $i + 1] - $p[2 * $i] == 9 then 0 else .[$i] end])' >"$BATS_TEST_TMPDIR/cut.json"
+    run -1 "$BEND" "$BATS_TEST_TMPDIR/cut.json"
+    assert_output --partial "the bar is in pieces"
+}
+
+@test "wrong usage: units, contradictions, bounds" {
+    run -2 "$BEND" --span 8 "$BAR"
+    assert_output --partial "has no unit"
+    run -2 "$BEND" --span 8N "$BAR"
+    run -2 "$BEND" --span -1um "$BAR"
+    assert_output --partial "greater than zero"
+    run -2 "$BEND" --max-force 1uN --max-deflection 1nm "$BAR"
+    run -2 "$BEND" --bond-law glue "$BAR"
+    run -2 "$BEND" --cycles 0 "$BAR"
+    run -0 "$BEND" --help
+    assert_output --partial "analyze modulus"
+}

@@ -1,0 +1,195 @@
+// bending_test.cpp: static three-point bending against beam theory, its independence of scale, load and fixture, and its hard cases.
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include <bit>
+#include <cmath>
+
+#include "physics/bending.h"
+#include "tests/physics/bonded_lattice.h"
+#include "tests/physics/relative.h"
+#include "tools/bend/report.h"
+
+using namespace kiln;
+using namespace kiln::bend;
+using test::relative;
+
+namespace {
+
+Result tested(State state, const Options& options = {}) {
+    return bend_static(std::move(state), options, [](double) { return true; });
+}
+
+const Point& peak_of(const Result& result, const Options& options = {}) {
+    return result.curve[static_cast<std::size_t>(options.points)];
+}
+
+/// From the point at half the greatest force to the one at all of it, N/m.
+double slope_of(const Result& result) {
+    const Point &half = result.curve[3], &full = result.curve[6];
+    return (full.force - half.force) / (full.deflection - half.deflection);
+}
+
+double modulus_of(const Result& result) {
+    return physics::bending_modulus(slope_of(result), result.fixture.span, result.specimen.size[1], result.specimen.size[2],
+                                    result.specimen.poisson_ratio);
+}
+
+/// Bending stiffness of a bar of straight chains, N m2: for each, k_n l z2 + k_bend l.
+double flexural_stiffness(const Result& result) {
+    const physics::BondStiffness& k = result.specimen.body.network.stiffness.front();
+    const double l = 1e-7;
+    const auto rows = std::lround(result.specimen.size[2] / l), columns = std::lround(result.specimen.size[1] / l);
+    double sum = 0.0;
+    for (long row = 0; row < rows; ++row) {
+        const double z = (static_cast<double>(row) - static_cast<double>(rows - 1) / 2.0) * l;
+        sum += static_cast<double>(columns) * (k.normal * z * z + k.bending) * l;
+    }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a slender simple cubic bar has its own flexural stiffness within 3 %, and with its own shear within 1 %") {
+    for (const int height : {4, 6, 8}) {
+        const Result result = tested(test::make_lattice({.cells = {26 * height, 3, height}}));
+        REQUIRE(result.fixture.span / result.specimen.size[2] >= 20.0);
+        CHECK(result.converged);
+        const double L = result.fixture.span, bending = L * L * L / (48.0 * flexural_stiffness(result));
+        CHECK(1.0 / slope_of(result) == relative(bending, 0.03));
+        const double G = result.specimen.body.network.stiffness.front().shear / 2e-7;
+        const double shear = L / (4.0 * 5.0 / 6.0 * G * result.specimen.size[1] * result.specimen.size[2]);
+        CHECK(1.0 / slope_of(result) == relative(bending + shear, 0.01));
+    }
+}
+
+TEST_CASE("the wanted deflection or force is met, cycles repeat, unloading retraces loading") {
+    Options options;
+    options.cycles = 2;
+    options.points = 4;
+    options.max_deflection = 3e-10;
+    const Result by_deflection = tested(test::make_rough_bar({30, 6, 6}), options);
+    REQUIRE(by_deflection.curve.size() == 17);
+    CHECK(peak_of(by_deflection, options).deflection == relative(3e-10, 1e-5));
+    CHECK(by_deflection.curve.front().force == 0.0);
+    CHECK(by_deflection.curve.back().force == 0.0);
+    for (std::size_t k = 0; k < 17; ++k) {
+        CHECK(by_deflection.curve[k].deflection == by_deflection.curve[16 - k].deflection);
+        CHECK(by_deflection.curve[k].force == by_deflection.curve[(k + 8) % 16].force);
+    }
+    Options by_force = options;
+    by_force.max_deflection = 0.0;
+    by_force.max_force = peak_of(by_deflection, options).force;
+    const Result result = tested(test::make_rough_bar({30, 6, 6}), by_force);
+    CHECK(peak_of(result, options).deflection == relative(3e-10, 1e-5));
+    CHECK(result.curve[2].force == by_force.max_force / 2.0);
+}
+
+TEST_CASE("forces and moments of the cylinders balance, contacts only press, and travel grows with force") {
+    const Result result = tested(test::make_rough_bar({36, 7, 7}));
+    const std::vector<mechanics::WallContact> contacts = find_contacts(result.specimen, result.fixture);
+    double up = 0.0, down = 0.0, pitch = 0.0, roll = 0.0;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        const double force = result.peak.contact_force[c];
+        CHECK(force >= 0.0);
+        const Vec3& x = result.specimen.body.network.position[static_cast<std::size_t>(contacts[c].node)];
+        (contacts[c].punch ? down : up) += force;
+        pitch += (contacts[c].punch ? -force : force) * x[0];
+        roll += (contacts[c].punch ? -force : force) * x[1];
+    }
+    const double force = peak_of(result).force;
+    CHECK(up == relative(force, 1e-9));
+    CHECK(down == relative(force, 1e-9));
+    CHECK(std::abs(pitch) <= 1e-9 * force * result.fixture.span);
+    CHECK(std::abs(roll) <= 1e-9 * force * result.fixture.span);
+    for (std::size_t k = 0; k < 6; ++k) {
+        CHECK(result.curve[k + 1].punch > result.curve[k].punch);
+        CHECK(result.curve[k + 1].deflection > result.curve[k].deflection);
+    }
+}
+
+TEST_CASE("work of the punch is the energy stored; more points bring them closer") {
+    Options coarse, fine;
+    fine.points = 24;
+    const double few = tested(test::make_rough_bar({30, 6, 6}), coarse).energy_error;
+    const double many = tested(test::make_rough_bar({30, 6, 6}), fine).energy_error;
+    CHECK(few < 2e-3);
+    CHECK(many < 1e-4);
+}
+
+TEST_CASE("the modulus does not depend on the scale, from 1 nm to 1 m") {
+    const double modulus = modulus_of(tested(test::make_rough_bar({30, 6, 6})));
+    for (const double edge : {1e-9, 1.0}) CHECK(modulus_of(tested(test::make_rough_bar({30, 6, 6}, edge))) == relative(modulus, 1e-8));
+}
+
+TEST_CASE("where the particles' images are does not matter") {
+    State state = test::make_rough_bar({30, 6, 6});
+    const Result as_built = tested(state);
+    test::scatter_images(state);
+    const Result moved = tested(state);
+    CHECK(moved.specimen.dropped_bonds == as_built.specimen.dropped_bonds);
+    CHECK(modulus_of(moved) == relative(modulus_of(as_built), 1e-7));
+}
+
+TEST_CASE("the same bytes for any number of threads, states included") {
+    const int threads = omp_get_max_threads();
+    std::vector<std::string> documents;
+    for (const int count : {1, 2, 3}) {
+        omp_set_num_threads(count);
+        const Result result = tested(test::make_rough_bar({30, 6, 6}));
+        documents.push_back(document(result, {}, Json::array()).dump());
+        for (const Vec3& position : bent_state(result, Json::array()).particles.position)
+            for (const double x : position) documents.back() += std::to_string(std::bit_cast<std::uint64_t>(x)) + " ";
+    }
+    omp_set_num_threads(threads);
+    CHECK(documents[0] == documents[1]);
+    CHECK(documents[0] == documents[2]);
+}
+
+TEST_CASE("compression above, tension below") {
+    const Result result = tested(test::make_lattice({.cells = {60, 4, 6}}));
+    const State bent = bent_state(result, Json::array());
+    const auto& tension = std::get<std::vector<double>>(bent.bonds->other[1].array.data);
+    CHECK(bent.bonds->other[1].name == "normal_force");
+    const double middle = result.fixture.middle;
+    for (std::size_t bond = 0; bond < tension.size(); ++bond) {
+        const Vec3 along = bond_vector(bent, *bent.bonds, bond);
+        const Vec3 at = bent.particles.position[static_cast<std::size_t>(bent.bonds->pair[bond][0])] + along / 2.0;
+        if (std::abs(along.normalized()[0]) < 0.9 || std::abs(at[0] - middle) > 0.35 * result.fixture.span) continue;
+        CHECK((at[2] < result.specimen.size[2] / 2.0) == (tension[bond] > 0.0));
+    }
+}
+
+TEST_CASE("hard cases are refused by name") {
+    State state = test::make_lattice({.cells = {20, 3, 3}});
+    Options options;
+    options.span = 2.1e-6;
+    CHECK_THROWS_WITH_AS(tested(state, options), doctest::Contains("is not shorter than the bar"), Error);
+    State without = state;
+    without.bonds.reset();
+    CHECK_THROWS_WITH_AS(tested(without), "the state has no bonds; run bondify first", Error);
+
+    State broken = state;
+    std::vector<std::int32_t> kept;
+    for (std::size_t bond = 0; bond < broken.bonds->size(); ++bond) {
+        const auto [i, j] = broken.bonds->pair[bond];
+        if (std::min(i, j) / 9 != 12 || std::max(i, j) / 9 != 13) kept.push_back(static_cast<std::int32_t>(bond));
+    }
+    broken.bonds = take_rows(*broken.bonds, kept);
+    CHECK_THROWS_WITH_AS(tested(broken), doctest::Contains("the bar is in pieces: the largest, 117 of 180 particles"), Error);
+
+    // The bar's particles stand at odd multiples of 0.05 um; thin cylinders find the gaps between them.
+    Options thin;
+    thin.punch_radius = 1e-9;
+    thin.span = 1.5e-6;
+    CHECK_THROWS_WITH_AS(tested(state, thin), "the punch touches no particle", Error);
+    thin.span = 1.6e-6;
+    CHECK_THROWS_WITH_AS(tested(state, thin), "a support touches no particle", Error);
+
+    // Open ends: half the bar has no particles.
+    State half = state;
+    half.box.periodic = {false, false, false};
+    half.box.lengths[0] = 4e-6;
+    half.box.periodic[0] = true;
+    CHECK_THROWS_WITH_AS(tested(half), doctest::Contains("the bar does not reach its supports"), Error);
+}

@@ -1,0 +1,10 @@
+// relative.h: comparison of numbers of any size; doctest's Approx alone adds 1 to the size and so accepts any two small ones.
+#pragma once
+
+#include <doctest/doctest.h>
+
+namespace kiln::test {
+
+inline doctest::Approx relative(double value, double epsilon) { return doctest::Approx(value).scale(0.0).epsilon(epsilon); }
+
+}  // namespace kiln::test
