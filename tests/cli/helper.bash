@@ -6,6 +6,7 @@ ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
 : "${SINTER:=$ROOT/build/bin/sinter}" "${BONDIFY:=$ROOT/build/bin/bondify}"
 : "${BEND:=$ROOT/build/bin/bend}" "${ANALYZE:=$ROOT/build/bin/analyze}" "${PYTHON:=/usr/bin/python3}"
 export SINTER BONDIFY BEND ANALYZE PYTHON
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}" # states of a few hundred particles are done soonest so, and tests may share the machine
 
 # near A B TOLERANCE: fails, and says so, unless |A - B| <= TOLERANCE |B|.
 near() {

@@ -20,7 +20,7 @@ def draw(tests, fit):
     axes.plot(density, exponential(*KNUDSEN, density) / GPA, color=style.REFERENCE, linestyle=(0, (5, 3)),
               label=f"Knudsen's law for alumina: {KNUDSEN[0] / GPA:.0f} GPa exp(−{KNUDSEN[1]:.2f} P)")
     axes.plot(density, exponential(fit["E0"], fit["b"], density) / GPA, color=style.LINE,
-              label=f"Knudsen's law fitted to this run: {fit['E0'] / GPA:.0f} GPa exp(−{fit['b']:.2f} P)")
+              label=f"fit to this run: {fit['E0'] / GPA:.0f} GPa exp(−{fit['b']:.2f} P)")
     axes.errorbar([test["relative_density"] for test in tests], [test["young_modulus"] / GPA for test in tests],
                   [test["standard_error"] / GPA for test in tests], fmt="o", color=style.ACCENT, markersize=6, capsize=3,
                   label="simulated bending", zorder=3)

@@ -1,0 +1,100 @@
+#!/usr/bin/env bats
+# paper.bats: the study of the paper by Make: what it makes, that it goes on where it stopped, that it may run in parallel.
+bats_require_minimum_version 1.5.0
+load helper.bash
+
+CASES=(0.67 0.71 0.79 0.88)
+
+# A dense start keeps this quick; the loose one of the paper takes most of the time of a run.
+study() {
+    make -C "$ROOT/workflows/paper" N=600 SEED=5 OUT="$BATS_FILE_TMPDIR/study" \
+        GREEN='-n $(N) --method affine --compact-to 0.6 --aspect 4:1:1 --seed $(SEED)' "$@"
+}
+
+setup_file() {
+    study >"$BATS_FILE_TMPDIR/said"
+}
+
+setup() {
+    cd "$BATS_FILE_TMPDIR/study"
+}
+
+@test "the study says Table 2 with its deviations, moduli, the fit and where the figures are" {
+    run -0 cat "$BATS_FILE_TMPDIR/said"
+    assert_line --partial "relative density"
+    assert_line --regexp "deviation( +[-+][0-9.]+ %){4}"
+    assert_line --partial "Largest deviation of the 12 numbers"
+    assert_line --partial "E0 exp(-b P)"
+    assert_line --partial "study/figures/density.png"
+}
+
+@test "the table holds twelve numbers beside the paper's" {
+    run -0 jq -c '[length, ([.[].paper] | add), (all(.[]; .run > 0 and (.deviation | fabs) < 0.25))]' table2.json
+    assert_output "[12,1234701.28,true]"
+    run -0 wc -l <table2.csv
+    assert_output 13
+}
+
+@test "every case has its states, its test and its modulus" {
+    for case in "${CASES[@]}"; do
+        near "$("$ANALYZE" density "$case/sintered.kiln" | jq .relative_density)" "$case" 1e-5
+        jq -e '.count > 1000' "$case/bonds.json"
+        jq -e '.young_modulus > 1e9 and .standard_error >= 0' "$case/modulus.json"
+    done
+    jq -e '.points | length == 4' fit.json
+}
+
+@test "no figure is blank" {
+    run -0 "$PYTHON" - figures/*.png <<'END'
+import sys
+from matplotlib import image
+for path in sys.argv[1:]:
+    pixels = image.imread(path)[..., :3]
+    ink = (pixels.min(axis=2) < 0.9).mean()
+    print(path.split("/")[-1], "drawn" if min(pixels.shape[:2]) > 300 and 0.005 < ink < 0.6 else f"ink {ink}, size {pixels.shape}")
+END
+    assert_output $'bend.png drawn\nbonds.png drawn\ndensity.png drawn\nmodulus.png drawn'
+}
+
+@test "a second call makes nothing" {
+    study SINTER=false BONDIFY=false BEND=false MEASURE=false
+}
+
+@test "what is missing is made, and only that" {
+    rm 0.71/bend.json
+    run -2 study BEND=false
+    study SINTER=false BONDIFY=false
+    jq -e .span 0.71/bend.json
+}
+
+@test "other options make the run anew" {
+    cp -r . "$BATS_TEST_TMPDIR/copy"
+    run -2 study OUT="$BATS_TEST_TMPDIR/copy" BONDING="--volume cap-corrected" BONDIFY=false
+    assert_output --partial "bonded.kiln] Error 1"
+    run -2 study OUT="$BATS_TEST_TMPDIR/copy" SEED=6 SINTER=false
+    assert_output --partial "green.kiln] Error 1"
+}
+
+@test "a stage that fails leaves no file under its final name" {
+    out="$BATS_TEST_TMPDIR/failed"
+    run -2 study OUT="$out" SINTER="$(type -P false)"
+    [ ! -e "$out/green.kiln" ]
+}
+
+@test "parallel makes give the same numbers" {
+    study -j4 OUT="$BATS_TEST_TMPDIR/parallel" table fit >/dev/null
+    cmp table2.json "$BATS_TEST_TMPDIR/parallel/table2.json"
+    cmp fit.json "$BATS_TEST_TMPDIR/parallel/fit.json"
+}
+
+@test "times lists every stage with its time and memory" {
+    run -0 study times
+    for made in green.kiln sintered.kiln 0.67/bonded.kiln 0.88/bend.json fit.json "in all"; do
+        assert_line --regexp "^$made( +[0-9.]+){3}$"
+    done
+}
+
+@test "a relative OUT is refused with a hint" {
+    run -2 make -C "$ROOT/workflows/paper" OUT=somewhere
+    assert_output --partial 'OUT=somewhere is not an absolute path; try OUT=$PWD/somewhere'
+}
