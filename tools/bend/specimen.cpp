@@ -66,10 +66,12 @@ Specimen cut_specimen(State state, const mechanics::BondModel& model) {
     for (int axis = 0; axis < 3; ++axis) {
         if (box.periodic[static_cast<std::size_t>(axis)]) continue;
         double low = HUGE_VAL, high = -HUGE_VAL;
-        for (const std::int32_t row : specimen.body.particle) {
-            const auto particle = static_cast<std::size_t>(row);
-            low = std::min(low, state.particles.position[particle][axis] - state.particles.radius[particle]);
-            high = std::max(high, state.particles.position[particle][axis] + state.particles.radius[particle]);
+        for (const auto& pair : state.bonds->pair) {
+            for (const std::int32_t row : pair) {
+                const auto particle = static_cast<std::size_t>(row);
+                low = std::min(low, state.particles.position[particle][axis] - state.particles.radius[particle]);
+                high = std::max(high, state.particles.position[particle][axis] + state.particles.radius[particle]);
+            }
         }
         specimen.origin[axis] = low;
         specimen.size[axis] = high - low;

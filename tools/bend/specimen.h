@@ -12,7 +12,7 @@ struct Specimen {
     mechanics::BondedBody body;      // its largest piece
     std::size_t dropped_bonds = 0;   // that went through opened faces
     double relative_density = 0.0;   // of the state it was cut from
-    Vec3 origin, size;               // m, of the bar: the box along periodic axes, else what the particles reach
+    Vec3 origin, size;               // m, of the bar: the box along periodic axes, else what bonded particles reach
     double young_modulus = 0.0;      // Pa, of the solid that most particles are made of
     double poisson_ratio = 0.0;      // of the same
 };
