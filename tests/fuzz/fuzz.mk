@@ -1,0 +1,25 @@
+# fuzz.mk: `make fuzz` feeds mutated documents to the reader for FUZZ_SECONDS, under the address and undefined behaviour sanitizers.
+FUZZ_SECONDS ?= 60
+FUZZ_CXX     ?= clang++-14
+FUZZ_FLAGS   := -std=c++20 -g1 -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined \
+                -Ilib -isystem /usr/include/eigen3
+FUZZ_SOURCES := tests/fuzz/reader_fuzz.cpp $(wildcard lib/io/*.cpp) lib/core/array.cpp lib/core/state.cpp lib/physics/materials.cpp
+FUZZ_OBJECTS := $(FUZZ_SOURCES:%.cpp=$(BUILD)/fuzz/%.o)
+# The seeds are the conformance set; what is found goes to $(BUILD)/fuzz/corpus and is used again.
+# No input needs more memory than this, nor longer than this for one document.
+FUZZ_LIMITS  := -rss_limit_mb=1024 -malloc_limit_mb=64 -timeout=10 -max_len=16384
+
+.PHONY: fuzz
+fuzz: $(BUILD)/fuzz/reader      ## feed mutated documents to the reader for FUZZ_SECONDS (60)
+	@mkdir -p $(BUILD)/fuzz/corpus
+	$< $(FUZZ_LIMITS) -max_total_time=$(FUZZ_SECONDS) -dict=tests/fuzz/dem-state.dict -artifact_prefix=$(BUILD)/fuzz/ \
+	    -print_final_stats=1 $(BUILD)/fuzz/corpus tests/data/conformance/valid tests/data/conformance/invalid
+
+$(BUILD)/fuzz/reader: $(FUZZ_OBJECTS)
+	$(FUZZ_CXX) $(FUZZ_FLAGS) $^ -o $@
+
+$(BUILD)/fuzz/%.o: %.cpp
+	@command -v $(FUZZ_CXX) >/dev/null || \
+	    { echo "make fuzz needs $(FUZZ_CXX), of the Debian packages clang-14 and libclang-rt-14-dev" >&2; exit 1; }
+	@mkdir -p $(@D)
+	$(FUZZ_CXX) $(FUZZ_FLAGS) -MMD -MP -c $< -o $@
