@@ -144,6 +144,12 @@ TEST_CASE("unknown keys and arrays pass in their order: of the document, its box
     CHECK(names == "id position radius material velocity a pair image radius length volume force ");
 }
 
+TEST_CASE("nothing is carried of a document whose keys are all known") {
+    State state = rich_state();
+    state.other = Json::object();
+    CHECK(io::state_from(document_of(bytes_of(io::document_from(state), true))).other == Json::object());
+}
+
 TEST_CASE("what a tool knows is stronger than what it carries") {
     Json target = Json::parse(R"({"a":1,"b":{"c":2},"d":[{"e":3},{}],"f":[1]})");
     io::put_back(target, Json::parse(R"({"a":9,"b":{"c":9,"g":4},"d":[{"e":9,"h":5},{"i":6}],"f":[9,9],"j":7})"));
