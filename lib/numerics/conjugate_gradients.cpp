@@ -49,32 +49,60 @@ LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preco
                                       int most_iterations) {
     std::fill(x.displacement.begin(), x.displacement.end(), 0.0);
     x.strain.setZero();
+    std::fill(p_.displacement.begin(), p_.displacement.end(), 0.0);
+    p_.strain.setZero();
     r_ = b;
     mask(r_, free_axis);
-    preconditioner.apply(network, r_, z_);
-    mask(z_, free_axis);
-    p_ = z_;
-    double product = dot(network, r_, z_);
-    const double wanted = tolerance * tolerance * product;
-    const double start = product;
-    LinearSolve report;
-    while (product > wanted && report.iterations < most_iterations) {
-        apply_stiffness(network, p_, q_, total_);
-        mask(q_, free_axis);
-        const double curvature = dot(network, p_, q_);
-        if (!(curvature > 0.0)) break;  // only motion that costs nothing is left
-        const double step = product / curvature;
-        add(network, step, p_, x);
-        add(network, -step, q_, r_);
-        preconditioner.apply(network, r_, z_);
+    // Subtracts step * q from r, adds step * p to x, preconditions; gives the product of r and z.
+    const auto advance = [&](double step) {
+        x.strain += step * p_.strain;
+        r_.strain -= step * q_.strain;
+        preconditioner.apply_strain(r_, z_);
         mask(z_, free_axis);
-        const double next = dot(network, r_, z_);
-        const double ratio = next / product;
+        return r_.strain.dot(z_.strain) + network.sum_chunks([&](std::size_t chunk) {
+            const Range range = components(network, chunk);
+            if (step != 0.0)
+                for (std::size_t k = range.first; k < range.last; ++k) {
+                    x.displacement[k] += step * p_.displacement[k];
+                    r_.displacement[k] -= step * q_.displacement[k];
+                }
+            preconditioner.apply(network, chunk, r_, z_);
+            double sum = 0.0;
+            for (std::size_t k = range.first; k < range.last; ++k) sum += r_.displacement[k] * z_.displacement[k];
+            return sum;
+        });
+    };
+    // The next direction p = z + ratio * p, and q = K p; gives the product of p and q.
+    std::vector<Vec3> work(network.chunks().size());
+    const auto stiffness_along = [&](double ratio) {
+        p_.strain = z_.strain + ratio * p_.strain;
         network.for_chunks([&](std::size_t chunk) {
             const Range range = components(network, chunk);
             for (std::size_t k = range.first; k < range.last; ++k) p_.displacement[k] = z_.displacement[k] + ratio * p_.displacement[k];
+            network.displace(chunk, p_, total_);
         });
-        p_.strain = z_.strain + ratio * p_.strain;
+        const double curvature = network.sum_chunks([&](std::size_t chunk) {
+            work[chunk] = network.gather_chunk(chunk, p_.strain, total_, q_, StiffnessForce{network});
+            const Range range = components(network, chunk);
+            double sum = 0.0;
+            for (std::size_t k = range.first; k < range.last; ++k) sum += p_.displacement[k] * q_.displacement[k];
+            return sum;
+        });
+        q_.strain.setZero();
+        for (const Vec3& part : work) q_.strain += part;
+        mask(q_, free_axis);
+        return curvature + p_.strain.dot(q_.strain);
+    };
+
+    const double start = advance(0.0);
+    const double wanted = tolerance * tolerance * start;
+    double product = start, ratio = 0.0;
+    LinearSolve report;
+    while (product > wanted && report.iterations < most_iterations) {
+        const double curvature = stiffness_along(ratio);
+        if (!(curvature > 0.0)) break;  // only motion that costs nothing is left
+        const double next = advance(product / curvature);
+        ratio = next / product;
         product = next;
         ++report.iterations;
     }

@@ -1,4 +1,4 @@
-// contact_network.cpp: cutting the contacts into chunks, and the stiffness operator.
+// contact_network.cpp: cutting the contacts into chunks, by which of their particles each one owns.
 #include "numerics/contact_network.h"
 
 #include <array>
@@ -56,14 +56,6 @@ ContactNetwork::ContactNetwork(const Box& box, std::span<const Vec3> position, s
                 second[entry] = pairs[static_cast<std::size_t>(row)].j;
                 ++entry;
             }
-    });
-}
-
-void apply_stiffness(const ContactNetwork& network, const Motion& x, Motion& y, std::vector<double>& total) {
-    network.gather(x, y, total, [&](std::size_t entry, const Vec3& du) -> Vec3 {
-        const Vec3 n(network.nx[entry], network.ny[entry], network.nz[entry]);
-        const double along = (network.normal[entry] - network.tangential[entry]) * n.dot(du);
-        return network.tangential[entry] * du + along * n;
     });
 }
 

@@ -62,6 +62,13 @@ class ContactNetwork {
     template <typename Force>
     void gather(const Motion& motion, Motion& forces, std::vector<double>& total, const Force& force) const;
 
+    /// The first half of gather for one chunk: its particles' total displacements u + e*x.
+    void displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const;
+
+    /// The second half for one chunk, once all chunks are displaced; gives the chunk's part of forces.strain.
+    template <typename Force>
+    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<double>& total, Motion& forces, const Force& force) const;
+
     /// Calls visit(entry) once for each contact of a chunk that it owns, so that all chunks together visit every contact once.
     template <typename Visit>
     void for_owned(std::size_t chunk, const Visit& visit) const {
@@ -89,8 +96,15 @@ class ContactNetwork {
     std::vector<std::uint8_t> side_;  // which particles of a crossing entry are the chunk's own
 };
 
-/// y = K x with the entries' stiffness: K = sum of [kt I + (kn - kt) n n^T] on relative motions. total is scratch space.
-void apply_stiffness(const ContactNetwork& network, const Motion& x, Motion& y, std::vector<double>& total);
+/// Force of an entry's stiffness on a relative motion: [kt I + (kn - kt) n n^T] du.
+struct StiffnessForce {
+    const ContactNetwork& network;
+    Vec3 operator()(std::size_t entry, const Vec3& du) const {
+        const double x = network.nx[entry], y = network.ny[entry], z = network.nz[entry], shear = network.tangential[entry];
+        const double along = (network.normal[entry] - shear) * (x * du[0] + y * du[1] + z * du[2]);
+        return {shear * du[0] + along * x, shear * du[1] + along * y, shear * du[2] + along * z};
+    }
+};
 
 template <bool AddFirst, bool AddSecond, typename Force>
 void ContactNetwork::gather_range(std::size_t begin, std::size_t end, const double* total, double* forces, const Force& force) const {
@@ -125,29 +139,34 @@ Vec3 ContactNetwork::gather_crossing(const Chunk& chunk, const Vec3& strain, con
     return work;
 }
 
+inline void ContactNetwork::displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const {
+    for (std::size_t row = chunks_[chunk].first_particle; row < chunks_[chunk].last_particle; ++row) {
+        Eigen::Map<Vec3> target(&total[3 * row]);
+        target = Eigen::Map<const Vec3>(&motion.displacement[3 * row]) + motion.strain.cwiseProduct(position_[row]);
+    }
+}
+
+template <typename Force>
+Vec3 ContactNetwork::gather_chunk(std::size_t index, const Vec3& strain, const std::vector<double>& total, Motion& forces,
+                                  const Force& force) const {
+    const Chunk& chunk = chunks_[index];
+    double* target = forces.displacement.data();
+    std::fill(target + 3 * chunk.first_particle, target + 3 * chunk.last_particle, 0.0);
+    gather_range<true, true>(chunk.begin, chunk.first_only, total.data(), target, force);
+    gather_range<true, false>(chunk.first_only, chunk.second_only, total.data(), target, force);
+    gather_range<false, true>(chunk.second_only, chunk.crossing, total.data(), target, force);
+    Vec3 sum = gather_crossing(chunk, strain, total.data(), target, force);
+    // Sum of f * l: with l = x_j + shift - x_i it is the sum of the particles' forces times their positions, and the shifts.
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
+        sum += Eigen::Map<const Vec3>(target + 3 * row).cwiseProduct(position_[row]);
+    return sum;
+}
+
 template <typename Force>
 void ContactNetwork::gather(const Motion& motion, Motion& forces, std::vector<double>& total, const Force& force) const {
-    for_chunks([&](std::size_t index) {
-        for (std::size_t row = chunks_[index].first_particle; row < chunks_[index].last_particle; ++row)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                total[3 * row + axis] = motion.displacement[3 * row + axis] +
-                                        motion.strain[static_cast<Eigen::Index>(axis)] * position_[row][static_cast<Eigen::Index>(axis)];
-    });
+    for_chunks([&](std::size_t chunk) { displace(chunk, motion, total); });
     std::vector<Vec3> work(chunks_.size());
-    for_chunks([&](std::size_t index) {
-        const Chunk& chunk = chunks_[index];
-        double* target = forces.displacement.data();
-        std::fill(target + 3 * chunk.first_particle, target + 3 * chunk.last_particle, 0.0);
-        gather_range<true, true>(chunk.begin, chunk.first_only, total.data(), target, force);
-        gather_range<true, false>(chunk.first_only, chunk.second_only, total.data(), target, force);
-        gather_range<false, true>(chunk.second_only, chunk.crossing, total.data(), target, force);
-        Vec3 sum = gather_crossing(chunk, motion.strain, total.data(), target, force);
-        // Sum of f * l: with l = x_j + shift - x_i it is the sum of the particles' forces times their positions, and the shifts.
-        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                sum[static_cast<Eigen::Index>(axis)] += target[3 * row + axis] * position_[row][static_cast<Eigen::Index>(axis)];
-        work[index] = sum;
-    });
+    for_chunks([&](std::size_t chunk) { work[chunk] = gather_chunk(chunk, motion.strain, total, forces, force); });
     forces.strain.setZero();
     for (const Vec3& part : work) forces.strain += part;
 }

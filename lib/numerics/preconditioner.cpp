@@ -82,10 +82,10 @@ void Preconditioner::eliminate(const ContactNetwork::Chunk& chunk) {
                 }
             }
             upper[place - begin] = u;
-            lower_[place] = (u * inverse_[i].cast<double>()).cast<float>();
+            lower_[place] = (u * inverse_[i]).cast<float>();
             diagonal_[row] -= lower_[place].cast<double>() * u.transpose();
         }
-        inverse_[row] = pivot_inverse(diagonal_[row], trace).cast<float>();
+        inverse_[row] = pivot_inverse(diagonal_[row], trace);
     }
 }
 
@@ -111,27 +111,42 @@ void Preconditioner::factorise(const ContactNetwork& network, std::span<const Ve
     factorise_strain(network, vectors);
 }
 
-void Preconditioner::apply(const ContactNetwork& network, const Motion& r, Motion& z) const {
-    network.for_chunks([&](std::size_t index) {
-        const ContactNetwork::Chunk& chunk = network.chunks()[index];
-        double* out = z.displacement.data();
-        const auto at = [&](std::size_t row) { return Eigen::Map<Vec3>(out + 3 * row); };
-        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
-            Vec3 value = Eigen::Map<const Vec3>(&r.displacement[3 * row]);
-            for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place)
-                value -= lower_[place].cast<double>() * at(static_cast<std::size_t>(column_[place]));
-            at(row) = value;
+void Preconditioner::apply(const ContactNetwork& network, std::size_t index, const Motion& r, Motion& z) const {
+    const ContactNetwork::Chunk& chunk = network.chunks()[index];
+    const double* in = r.displacement.data();
+    double* out = z.displacement.data();
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {  // L y = r
+        double x = in[3 * row], y = in[3 * row + 1], w = in[3 * row + 2];
+        for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place) {
+            const float* l = lower_[place].data();  // by columns
+            const double* known = out + 3 * column_[place];
+            const double a = known[0], b = known[1], c = known[2];
+            x -= l[0] * a + l[3] * b + l[6] * c;
+            y -= l[1] * a + l[4] * b + l[7] * c;
+            w -= l[2] * a + l[5] * b + l[8] * c;
         }
-        for (std::size_t row = chunk.last_particle; row-- > chunk.first_particle;) {
-            at(row) = inverse_[row].cast<double>() * at(row).eval();
+        out[3 * row] = x;
+        out[3 * row + 1] = y;
+        out[3 * row + 2] = w;
+    }
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {  // D
+        const double* d = inverse_[row].data();
+        double* value = out + 3 * row;
+        const double a = value[0], b = value[1], c = value[2];
+        value[0] = d[0] * a + d[3] * b + d[6] * c;
+        value[1] = d[1] * a + d[4] * b + d[7] * c;
+        value[2] = d[2] * a + d[5] * b + d[8] * c;
+    }
+    for (std::size_t row = chunk.last_particle; row-- > chunk.first_particle;) {  // L^T z = y
+        const double a = out[3 * row], b = out[3 * row + 1], c = out[3 * row + 2];
+        for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place) {
+            const float* l = lower_[place].data();
+            double* left = out + 3 * column_[place];
+            left[0] -= l[0] * a + l[1] * b + l[2] * c;
+            left[1] -= l[3] * a + l[4] * b + l[5] * c;
+            left[2] -= l[6] * a + l[7] * b + l[8] * c;
         }
-        for (std::size_t row = chunk.last_particle; row-- > chunk.first_particle;) {
-            const Vec3 value = at(row);
-            for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place)
-                at(static_cast<std::size_t>(column_[place])) -= lower_[place].cast<double>().transpose() * value;
-        }
-    });
-    z.strain = strain_inverse_ * r.strain;
+    }
 }
 
 }  // namespace kiln::numerics

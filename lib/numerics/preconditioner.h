@@ -1,7 +1,7 @@
 // preconditioner.h: an approximate inverse of the stiffness of a contact network.
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "numerics/contact_network.h"
@@ -17,8 +17,11 @@ class Preconditioner {
     /// Takes the network's present stiffness. vectors: l of each pair, m.
     void factorise(const ContactNetwork& network, std::span<const Vec3> vectors);
 
-    /// z = M^-1 r.
-    void apply(const ContactNetwork& network, const Motion& r, Motion& z) const;
+    /// z = M^-1 r for the particles of one chunk.
+    void apply(const ContactNetwork& network, std::size_t chunk, const Motion& r, Motion& z) const;
+
+    /// z = M^-1 r for the strains of the box.
+    void apply_strain(const Motion& r, Motion& z) const { z.strain = strain_inverse_ * r.strain; }
 
    private:
     void assemble(const ContactNetwork& network, std::size_t chunk);
@@ -28,9 +31,9 @@ class Preconditioner {
     std::vector<std::size_t> row_begin_;     // blocks of a particle's row, left of the diagonal
     std::vector<std::int32_t> column_;       // ascending in a row
     std::vector<std::size_t> place_;         // of each entry that joins two particles of a chunk, its block
-    std::vector<Eigen::Matrix3f> lower_;     // L; half the memory traffic in single precision, and still symmetric
+    std::vector<Eigen::Matrix3f> lower_;     // L; half the memory traffic in single precision, and M stays symmetric
     std::vector<Eigen::Matrix3d> diagonal_;  // of the network, then D
-    std::vector<Eigen::Matrix3f> inverse_;   // of D
+    std::vector<Eigen::Matrix3d> inverse_;   // of D
     Eigen::Matrix3d strain_inverse_ = Eigen::Matrix3d::Zero();
 };
 

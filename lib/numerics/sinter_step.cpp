@@ -168,7 +168,6 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, dou
         const double length = line_search(step, slope, motion);
         const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
         const double now = length < 1.0 ? error : (linear.residual + error) * error;
-        if (getenv("DBG")) fprintf(stderr, "# newton %d lin %d tol %.1e res %.1e error %.2e length %.2f now %.2e\n", iteration, linear.iterations, linear_tolerance, linear.residual, error, length, now);
         if (now < tolerance) return true;
         linear_tolerance = std::clamp(std::max(now, 0.5 * tolerance / now), tightest_linear, loosest_linear);
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/spatial_order.h"
 #include "physics/diffusion.h"
@@ -21,6 +22,7 @@ constexpr double coincident = 1e-9;            // of the radii, distance of cent
 constexpr std::size_t most_idle_steps = 100;
 constexpr double idle = 1e-10;                 // log density change of an idle step
 
+constexpr double landing_solver = 0.05;  // tolerance of the solver there, over that of other steps
 constexpr int most_landings = 40;    // attempts to end a step at a wanted density
 constexpr int most_rejections = 20;  // of one step
 
@@ -132,7 +134,8 @@ double Sintering::closing_bound(const Motion& motion) const {
 
 Sintering::Trial Sintering::attempt(double duration, bool tight) {
     StepSettings settings = settings_.step;
-    if (tight) settings.solver_tolerance *= 1e-2;
+    if (tight) settings.solver_tolerance *= landing_solver;
+    ++attempts_;
     double closing = last_duration_ > 0.0 ? 1.2 * last_closing_ * std::max(1.0, duration / last_duration_) : 0.5 * margin_left_;
     for (;;) {
         if (margin_left_ < closing) find_pairs_with_margin(closing);
@@ -146,6 +149,8 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
         SinterStep solver(state_.box, state_.particles.position, active, settings);
         Trial trial;
         trial.report = solver.solve(steps, trial.motion, trial.first_order);
+        newton_ += trial.report.newton;
+        conjugate_gradients_ += trial.report.conjugate_gradients;
         const double reached = closing_bound(trial.motion);
         if (reached > closing) {  // pairs that were left out might have come to touch
             closing = 1.2 * reached;
@@ -159,23 +164,21 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
 }
 
 Sintering::Trial Sintering::land_on(double log_change, double& duration, const Trial& beyond) {
-    double low = 0.0, low_change = 0.0, high = duration, high_change = beyond.log_density;
+    // The density is a smooth function of the step's length: secants, kept inside the bracket.
+    double low = 0.0, high = duration;
+    double before = 0.0, before_miss = -log_change, here = duration, miss = beyond.log_density - log_change;
     Trial trial;
     for (int iteration = 0; iteration < most_landings; ++iteration) {
-        double share = (log_change - low_change) / (high_change - low_change);
-        if (iteration > 3) share = std::clamp(share, 0.02, 0.98);
-        duration = low + share * (high - low);
-        trial = attempt(duration, true);
-        const double miss = trial.log_density - log_change;
+        const double secant = here - miss * (here - before) / (miss - before_miss);
+        before = here;
+        before_miss = miss;
+        here = secant > low && secant < high ? secant : 0.5 * (low + high);
+        trial = attempt(here, true);
+        miss = trial.log_density - log_change;
         if (std::abs(miss) <= settings_.density_accuracy) break;
-        if (miss > 0.0) {
-            high = duration;
-            high_change = trial.log_density;
-        } else {
-            low = duration;
-            low_change = trial.log_density;
-        }
+        (miss > 0.0 ? high : low) = here;
     }
+    duration = here;
     return trial;
 }
 
@@ -228,7 +231,8 @@ StepRecord Sintering::advance(double latest_time, double highest_density) {
     StepRecord record{state_.time, duration,
                       density_,    strain_,
                       0.0,         0.0,
-                      error_,      trial.report.newton, trial.report.conjugate_gradients, trial.report.converged};
+                      error_,      std::exchange(attempts_, 0), std::exchange(newton_, 0), std::exchange(conjugate_gradients_, 0),
+                      trial.report.converged};
     count_contacts(record);
     return record;
 }

@@ -13,7 +13,7 @@ namespace kiln::numerics {
 struct SinteringSettings {
     StepSettings step;
     double temperature = 0.0;       // K
-    double tolerance = 1e-4;        // relative error of the density over the whole run that the steps aim at
+    double tolerance = 1e-3;        // relative error of the density over the whole run that the steps aim at
     double density_accuracy = 1e-7; // relative, of a wanted density
 };
 
@@ -25,7 +25,7 @@ struct StepRecord {
     double coordination_number;
     double mean_overlap_ratio;    // overlap over the sum of the radii, mean over contacts
     double error;                 // estimated, of the density since the start, relative
-    int newton, conjugate_gradients;
+    int attempts, newton, conjugate_gradients;  // of the step, rejected attempts included
     bool converged;
 };
 
@@ -77,6 +77,7 @@ class Sintering {
     double density_ = 0.0, error_ = 0.0;
     Vec3 strain_ = Vec3::Zero();
     std::size_t steps_ = 0, idle_steps_ = 0;
+    int attempts_ = 0, newton_ = 0, conjugate_gradients_ = 0;  // since the last accepted step
 };
 
 }  // namespace kiln::numerics

@@ -14,7 +14,7 @@ void Options::add_to(CLI::App& app) {
     cli::add_quantity(app, "--every", every, Dimension::time, "Also write a state after each such span of time, until the last wanted one");
     cli::add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of the hold")->required();
     app.add_option("--history", history, "File for the density history, one JSON line a step")->type_name("FILE");
-    cli::add_quantity(app, "--tolerance", tolerance, Dimension::none, "Relative error of the density over the run to aim at", "1e-4");
+    cli::add_quantity(app, "--tolerance", tolerance, Dimension::none, "Relative error of the density over the run to aim at", "1e-3");
     cli::add_quantity(app, "--alpha", constants.alpha, Dimension::none, "Contact constant of the sintering force", "4.5");
     cli::add_quantity(app, "--beta", constants.beta, Dimension::none, "Contact constant of the viscosities", "4");
     cli::add_quantity(app, "--eta", constants.eta, Dimension::none, "Contact constant of tangential friction", "0.01");

@@ -15,7 +15,7 @@ struct Options {
     double every = 0.0;             // s, between states; 0: none
     double temperature = 0.0;       // K
     std::string history;            // file of one JSON line a step
-    double tolerance = 1e-4;
+    double tolerance = 1e-3;
     physics::ContactConstants constants;
 
     void add_to(CLI::App& app);

@@ -23,6 +23,7 @@ Json summary_of(const numerics::StepRecord& record) {
             {"coordination_number", record.coordination_number},
             {"mean_overlap_ratio", record.mean_overlap_ratio},
             {"density_error", record.error},
+            {"attempts", record.attempts},
             {"newton", record.newton},
             {"conjugate_gradients", record.conjugate_gradients},
             {"converged", record.converged}};
