@@ -14,7 +14,7 @@ constexpr std::size_t alignment = 64;  // bytes
 std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
 
 void put(std::FILE* file, const std::string& name, const void* data, std::size_t bytes) {
-    if (std::fwrite(data, 1, bytes, file) != bytes) throw_system_error(name + ": cannot be written");
+    if (bytes > 0 && std::fwrite(data, 1, bytes, file) != bytes) throw_system_error(name + ": cannot be written");
 }
 
 /// JSON has no word for NaN and infinity; the library would write null.
