@@ -57,7 +57,8 @@ void check_sound(const State& state) {
     for (std::size_t row = 0; row < count; ++row) {
         require(particles.position[row].allFinite() && std::isfinite(particles.radius[row]), "finite particle");
         require(particles.radius[row] > 0.0, "radius");
-        require(particles.material[row] >= 0 && static_cast<std::size_t>(particles.material[row]) < state.materials.size(), "material");
+        const std::int32_t material = particles.material[row];
+        require(material >= 0 && static_cast<std::size_t>(material) < state.materials.size(), "material");
     }
     if (!state.bonds) return;
     const Bonds& bonds = *state.bonds;
