@@ -31,14 +31,14 @@ space := $(empty) $(empty)
 comma_list = $(subst $(space),$(comma),$(strip $(1)))
 each_case = $(CASES:%=$(OUT)/%/$(1))
 
-# ---- programs: built if they are this tree's own and are not there -------------------------------------------------------------------
+# ---- programs: built if they are this tree's own and are not there -------------------------------------------------------------
 OWN := $(addprefix $(ROOT)/build/bin/,sinter bondify bend analyze)
 PROGRAMS := $(filter $(OWN),$(SINTER) $(BONDIFY) $(BEND) $(ANALYZE))
 
 $(OWN) &:
 	$(MAKE) -C $(ROOT) BUILD=build all
 
-# ---- settings: a file for each stage that changes only when the stage's options do, so a changed N or SEED makes the run anew ---------
+# ---- settings: a file for each stage that changes only when the stage's options do, so a changed N or SEED makes the run anew --
 .PHONY: FORCE
 FORCE:
 
@@ -46,7 +46,7 @@ $(OUT)/GREEN.settings $(OUT)/SINTERING.settings $(OUT)/BONDING.settings $(OUT)/B
 	@mkdir -p $(@D)
 	@cmp -s $@ <(echo '$($*)') || echo '$($*)' > $@
 
-# ---- stages --------------------------------------------------------------------------------------------------------------------------
+# ---- stages --------------------------------------------------------------------------------------------------------------------
 $(OUT)/green.kiln: $(OUT)/GREEN.settings | $(PROGRAMS)
 	$(MEASURE) $@ $(SINTER) green $(GREEN) -o $@
 
@@ -73,13 +73,14 @@ $(OUT)/%/modulus.json: $(OUT)/%/bend.json | $(PROGRAMS)
 $(OUT)/fit.json: $(call each_case,modulus.json) | $(PROGRAMS)
 	$(MEASURE) $@ $(ANALYZE) fit --law knudsen -o $@ $^
 
-# ---- all stages, named so that a missing file is made again and none is taken for a passing step -------------------------------------
-STAGES := green.kiln sintered.kiln $(foreach file,sintered.kiln bonded.kiln bonds.json bend.json modulus.json,$(CASES:%=%/$(file))) fit.json
+# ---- all stages, named so that a missing file is made again and none is taken for a passing step -------------------------------
+CASE_STAGES := sintered.kiln bonded.kiln bonds.json bend.json modulus.json
+STAGES := green.kiln sintered.kiln $(foreach file,$(CASE_STAGES),$(CASES:%=%/$(file))) fit.json
 
 .PHONY: stages
 stages: $(STAGES:%=$(OUT)/%) $(OUT)/history.jsonl $(call each_case,bent.kiln)
 
-# ---- how long each stage took and how much memory it needed --------------------------------------------------------------------------
+# ---- how long each stage took and how much memory it needed --------------------------------------------------------------------
 .PHONY: times
 times: stages
 	@cd $(OUT); for stage in $(STAGES); do echo -e "$$stage\t$$(cat $$stage.time)"; done | awk -F '\t' \

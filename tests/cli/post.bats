@@ -53,10 +53,12 @@ import numpy
 from dem_state import read_file
 (state,) = read_file("state.kiln")
 particles, bonds = state["particles"], state["bonds"]
-print(particles["id"].dtype, particles["position"].shape, particles["tensor"].dtype, particles["tensor"].shape, bonds["image"].dtype)
+print(particles["id"].dtype, particles["position"].shape, bonds["image"].dtype)
+print(particles["tensor"].dtype, particles["tensor"].shape)
 print(state["note"], numpy.array_equal(particles["id"], numpy.arange(50)), particles["radius"].min() > 0)
 END
-    assert_line "int64 (50, 3) float32 (50, 3, 3) int8"
+    assert_line "int64 (50, 3) int8"
+    assert_line "float32 (50, 3, 3)"
     assert_line "überall True True"
 }
 
@@ -78,8 +80,9 @@ with open("states.kiln", "rb") as stream:
     "$PYTHON" random_state.py | "$PYTHON" copy.py --text >>mixed.kiln
     run -0 "$PYTHON" -c '
 from dem_state import read_file
-print([document["format"] if document["format"] != "dem-state" else len(document["particles"]["radius"]) for document in read_file("mixed.kiln")])'
-    assert_output "[1, 50, 'dem-bend', 1, 50]"
+for document in read_file("mixed.kiln"):
+    print(document["format"], document["particles"] if document["format"] == "dem-bend" else len(document["particles"]["radius"]))'
+    assert_output $'dem-state 1\ndem-state 50\ndem-bend 50\ndem-state 1\ndem-state 50'
 }
 
 @test "a truncated stream is an error that says how much was wanted" {

@@ -1,5 +1,5 @@
 #!/bin/bash
-# pipe.sh: the whole paper as one shell pipe; the law of Young's modulus against density comes out. Usage: pipe.sh [PARTICLES [SEED]]
+# pipe.sh: the whole paper as one shell pipe, from particles to the law of Young's modulus. Usage: pipe.sh [PARTICLES [SEED]]
 set -euo pipefail
 bin=$(dirname "$0")/../../build/bin
 SINTER=${SINTER:-$bin/sinter} BONDIFY=${BONDIFY:-$bin/bondify} BEND=${BEND:-$bin/bend} ANALYZE=${ANALYZE:-$bin/analyze}

@@ -1,4 +1,4 @@
-"""dem_state.py: reads and writes streams of dem-state documents, text and binary, as numpy arrays; docs/dem-state.5 is the format."""
+"""dem_state.py: reads and writes streams of dem-state documents, text and binary, as numpy arrays (see docs/dem-state.5)."""
 import json
 import math
 

@@ -58,8 +58,8 @@ def draw(state, test):
     margin = 0.45 * test["height"] / NM
     figure, axes = pyplot.subplots(figsize=(6.8, 6.8 * (high - low + 2 * margin) / (right - left) * 0.86 + 0.95))
     middle = test["length"] / 2 + state["box"]["origin"][0]
-    radius = test["punch_radius"]
-    for name, x, side in (("punch", middle, 1), ("support", middle - test["span"] / 2, -1), ("support", middle + test["span"] / 2, -1)):
+    radius, half_span = test["punch_radius"], test["span"] / 2
+    for name, x, side in (("punch", middle, 1), ("support", middle - half_span, -1), ("support", middle + half_span, -1)):
         z = cylinder_height(position, particles["radius"], x, radius, side)
         axes.add_patch(Circle((x / NM, z / NM), radius / NM, facecolor="#eeeeee", edgecolor="#888888", linewidth=0.8))
         axes.text(x / NM, (z - side * 0.75 * radius) / NM, name, ha="center", va="center", color="#555555")

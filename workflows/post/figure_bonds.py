@@ -17,7 +17,7 @@ def draw(cases):
         counts, _ = numpy.histogram(radii / NM, edges)
         axes.stairs(100 * counts / radii.size / BIN, edges, color=colour, linewidth=1.5,
                     label=f"{density:.2f}: {radii.size:,} bonds, mean {radii.mean() / NM:.1f} nm")
-    axes.legend(title="Relative density", loc="upper left", alignment="left")
+    axes.legend(title="Relative density", loc="upper left", alignment="left", fontsize="small")
     axes.set_xlim(0, edges[-1])
     axes.set_ylim(0, None)
     axes.set_xlabel("Bond radius, nm")

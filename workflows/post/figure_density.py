@@ -1,4 +1,4 @@
-"""figure_density.py: relative density against sintering time with the states that were picked marked (Fig. 2 of Dosta et al. 2017)."""
+"""figure_density.py: relative density against sintering time, picked states marked (Fig. 2 of Dosta et al. 2017)."""
 import json
 
 import style

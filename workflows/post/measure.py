@@ -1,4 +1,4 @@
-"""measure.py: runs the stage that makes a file, says how long it took, and writes wall time, processor time (s) and peak memory (MB)
+"""measure.py: runs the stage that makes a file, says how long it took, and writes wall and processor time (s) and peak memory (MB)
 to FILE.time; the exit status is the stage's."""
 import resource
 import signal

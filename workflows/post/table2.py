@@ -50,7 +50,7 @@ def as_text(table, particles):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("results", nargs=len(DENSITIES), help="results of analyze bonds, in the order of the densities")
-    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="table to write; .csv and .json are written beside it")
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="table to write; also as .csv and .json")
     given = parser.parse_args()
     results = [read_file(path)[0] for path in given.results]
     table = entries(results)
