@@ -15,6 +15,7 @@ constexpr double response_tolerance = 0.02;  // of one linear solve; the next on
 constexpr int most_fields = 120;
 constexpr int most_newton_steps = 500;
 constexpr double newton_tolerance = 1e-13;   // unbalanced force in the space over the punch force
+constexpr double second_pass = 0.1;          // share of a field's energy below which rounding calls for another orthogonalisation
 constexpr double least_novelty = 1e-10;      // energy of a field that is not in the space already
 
 std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
@@ -82,8 +83,14 @@ double ContactProblem::energy(const Contacts& contacts, const Eigen::VectorXd& a
     return sum;
 }
 
+/// Sum over the contacts that carry force; not a matrix product, whose order of summation would depend on the number of threads.
 Eigen::MatrixXd ContactProblem::curvature(const Contacts& contacts) const {
-    Eigen::MatrixXd matrix = closing_.transpose() * contacts.stiffness.asDiagonal() * closing_;
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(closing_.cols(), closing_.cols());
+    for (Eigen::Index c = 0; c < closing_.rows(); ++c) {
+        if (contacts.stiffness[c] <= 0.0) continue;
+        const Eigen::VectorXd row = closing_.row(c);
+        matrix.noalias() += contacts.stiffness[c] * row * row.transpose();
+    }
     for (std::size_t k = 0; k < fields_.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k) + 1;
         matrix(row, row) += fields_[k].stiffness;
@@ -148,12 +155,15 @@ void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     Field field;
     iterations += solver_.solve(unbalanced, field.displacement, response_tolerance).iterations;
     const double all = dot(field.displacement, unbalanced);
-    for (int pass = 0; pass < 2; ++pass) {
+    double rest = 0.0;  // energy that the fields there do not have
+    for (int pass = 0; pass == 0 || (pass == 1 && rest < second_pass * all); ++pass) {
+        rest = all;
         for (const Field& other : fields_) {
             const bool rigid = other.force.empty();
             const double share = rigid ? dot(field.displacement, other.displacement) / dot(other.displacement, other.displacement)
                                        : dot(field.displacement, other.force) / other.stiffness;
             add(-share, other.displacement, field.displacement);
+            rest -= share * share * other.stiffness;
         }
     }
     double largest = 0.0;

@@ -67,12 +67,13 @@ void add_contacts(std::vector<mechanics::WallContact>& contacts, const std::vect
 
 /// Weights w of nodes so that the sum of w u is the value at (x, y) of the function a + b x + c y + e x2 fitted to u there.
 std::vector<double> fit_weights(const std::vector<Vec3>& positions, double x, double y, double scale) {
-    Eigen::MatrixXd terms(static_cast<Eigen::Index>(positions.size()), 4);
+    Eigen::MatrixX4d terms(static_cast<Eigen::Index>(positions.size()), 4);
     for (std::size_t k = 0; k < positions.size(); ++k) {
         const double dx = (positions[k][0] - x) / scale, dy = (positions[k][1] - y) / scale;
         terms.row(static_cast<Eigen::Index>(k)) << 1.0, dx, dy, dx * dx;
     }
-    const Eigen::Matrix4d normal = terms.transpose() * terms;
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    for (Eigen::Index k = 0; k < terms.rows(); ++k) normal += terms.row(k).transpose() * terms.row(k);
     const Eigen::VectorXd weights = terms * normal.completeOrthogonalDecomposition().solve(Eigen::Vector4d::UnitX());
     return {weights.begin(), weights.end()};
 }

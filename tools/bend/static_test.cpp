@@ -13,6 +13,7 @@ namespace {
 constexpr double default_deflection = 1e-3;  // of the height
 constexpr double seating_force = 1e-9;       // of the greatest force: where the punch's travel is zero
 constexpr double deflection_tolerance = 1e-6;
+constexpr double trial_tolerance = 1e-4;     // of equilibria that only tell how stiff the bar is
 constexpr int most_trials = 12;
 
 struct Level {
@@ -31,19 +32,27 @@ class Levels {
 
     void seat(double force) { seat_ = problem_.seat(force); }
 
+    /// An equilibrium on the way to one that counts.
+    Level trial(double force, Result& result) { return solved(force, std::max(trial_tolerance, tolerance_), result); }
+
     Level at(double force, Result& result) {
-        last_ = problem_.solve(force, tolerance_);
-        result.iterations += last_.iterations;
+        const Level level = solved(force, tolerance_, result);
         result.residual = std::max(result.residual, last_.residual);
         result.converged = result.converged && last_.converged;
-        return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
-                last_.punch_compliance,
-                last_.bond_energy + last_.contact_energy};
+        return level;
     }
 
     mechanics::Equilibrium& last() { return last_; }
 
    private:
+    Level solved(double force, double tolerance, Result& result) {
+        last_ = problem_.solve(force, tolerance);
+        result.iterations += last_.iterations;
+        return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
+                last_.punch_compliance,
+                last_.bond_energy + last_.contact_energy};
+    }
+
     mechanics::ElasticSolver solver_;
     mechanics::ContactProblem problem_;
     Gauge gauge_;
@@ -67,17 +76,18 @@ Level peak_level(Levels& levels, const Specimen& specimen, const Fixture& fixtur
     const double wanted = options.max_deflection > 0.0 ? options.max_deflection : default_deflection * specimen.size[2];
     double force = estimated_force(specimen, fixture, wanted);
     levels.seat(seating_force * force);
-    Level level = levels.at(force, result);
+    Level level = levels.trial(force, result);
     Level before{};
     for (int trial = 0; trial < most_trials; ++trial) {
-        const double missing = wanted - level.point.deflection;
-        if (std::abs(missing) <= deflection_tolerance * wanted) return level;
         // Secant through the last two points; at first through the origin.
         const double slope = (level.point.force - before.point.force) / (level.point.deflection - before.point.deflection);
+        const double missing = wanted - level.point.deflection;
         force = level.point.force + slope * missing;
         if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the wanted deflection");
         before = level;
-        level = levels.at(force, result);
+        const bool near = std::abs(missing) <= std::sqrt(deflection_tolerance) * wanted;
+        level = near ? levels.at(force, result) : levels.trial(force, result);
+        if (near && std::abs(wanted - level.point.deflection) <= deflection_tolerance * wanted) return level;
     }
     throw Error("no punch force was found that gives the wanted deflection");
 }
