@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "core/contacts.h"
 
 namespace kiln::numerics {
 
@@ -30,13 +31,6 @@ double touching_share(double start, double end) {
 double alone(const PairStep& pair, double share) {
     const double start = std::max(0.0, pair.overlap);
     return std::cbrt(start * start * start + 3.0 * share * pair.force / pair.cubic);
-}
-
-/// Representative of a particle's cluster, with path halving.
-std::int32_t root(std::vector<std::int32_t>& parent, std::int32_t row) {
-    auto at = [&](std::int32_t index) -> std::int32_t& { return parent[static_cast<std::size_t>(index)]; };
-    while (at(row) != row) row = at(row) = at(at(row));
-    return row;
 }
 
 }  // namespace
@@ -176,22 +170,19 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, dou
 
 void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion) const {
     const std::size_t count = network_.particles();
-    std::vector<std::int32_t> parent(count);
-    std::iota(parent.begin(), parent.end(), 0);
+    Clusters clusters(count);
     for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        if (share_[row] <= 0.0 && step[row].overlap <= 0.0) continue;
-        const std::int32_t a = root(parent, pairs_[row].i), b = root(parent, pairs_[row].j);
-        parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        if (share_[row] > 0.0 || step[row].overlap > 0.0) clusters.join(pairs_[row].i, pairs_[row].j);
     }
     std::vector<Vec3> drift(count, Vec3::Zero());
     std::vector<double> members(count, 0.0);
     for (std::size_t row = 0; row < count; ++row) {
-        const auto cluster = static_cast<std::size_t>(root(parent, static_cast<std::int32_t>(row)));
+        const auto cluster = static_cast<std::size_t>(clusters.root(static_cast<std::int32_t>(row)));
         drift[cluster] += Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
         members[cluster] += 1.0;
     }
     for (std::size_t row = 0; row < count; ++row) {
-        const auto cluster = static_cast<std::size_t>(root(parent, static_cast<std::int32_t>(row)));
+        const auto cluster = static_cast<std::size_t>(clusters.root(static_cast<std::int32_t>(row)));
         Eigen::Map<Vec3>(&motion.displacement[3 * row]) -= drift[cluster] / members[cluster];
     }
 }

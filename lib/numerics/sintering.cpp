@@ -31,6 +31,7 @@ constexpr int most_rejections = 20;  // of one step
 Sintering::Sintering(State state, const SinteringSettings& settings) : state_(std::move(state)), settings_(settings) {
     Particles& particles = state_.particles;
     if (particles.size() == 0) throw Error("the state has no particles");
+    if (state_.bonds) throw Error("the state has bonds; sintering takes a packing without them");
     largest_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());
     order_ = spatial_order(state_.box, particles.position, 2.0 * largest_radius_);
     particles = take_rows(particles, order_);
@@ -228,28 +229,16 @@ StepRecord Sintering::advance(double latest_time, double highest_density) {
     apply(trial, duration);
     ++steps_;
     error_ += third_order_factor * difference * std::abs(trial.log_density);
-    StepRecord record{state_.time, duration,
-                      density_,    strain_,
-                      0.0,         0.0,
-                      error_,      std::exchange(attempts_, 0), std::exchange(newton_, 0), std::exchange(conjugate_gradients_, 0),
-                      trial.report.converged};
-    count_contacts(record);
-    return record;
-}
-
-void Sintering::count_contacts(StepRecord& record) const {
-    const Particles& particles = state_.particles;
-    std::size_t contacts = 0;
-    double ratio = 0.0;
-    for (const Pair& pair : pairs_) {
-        const double radii = particles.radius[static_cast<std::size_t>(pair.i)] + particles.radius[static_cast<std::size_t>(pair.j)];
-        const double overlap = radii - pair_vector(state_.box, particles.position, pair).norm();
-        if (overlap < 0.0) continue;
-        ++contacts;
-        ratio += overlap / radii;
-    }
-    record.coordination_number = 2.0 * static_cast<double>(contacts) / static_cast<double>(particles.size());
-    record.mean_overlap_ratio = contacts > 0 ? ratio / static_cast<double>(contacts) : 0.0;
+    return {.time = state_.time,
+            .duration = duration,
+            .relative_density = density_,
+            .strain = strain_,
+            .contacts = contact_statistics(state_.box, state_.particles, pairs_),
+            .error = error_,
+            .attempts = std::exchange(attempts_, 0),
+            .newton = std::exchange(newton_, 0),
+            .conjugate_gradients = std::exchange(conjugate_gradients_, 0),
+            .converged = trial.report.converged};
 }
 
 State Sintering::state() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "core/contacts.h"
 #include "core/state.h"
 #include "numerics/sinter_step.h"
 
@@ -22,8 +23,7 @@ struct StepRecord {
     double time, duration;        // at the end of the step, s; length of the step, s
     double relative_density;      // over a periodic box
     Vec3 strain;                  // logarithmic, since the start
-    double coordination_number;
-    double mean_overlap_ratio;    // overlap over the sum of the radii, mean over contacts
+    ContactStatistics contacts;
     double error;                 // estimated, of the density since the start, relative
     int attempts, newton, conjugate_gradients;  // of the step, rejected attempts included
     bool converged;
@@ -62,7 +62,6 @@ class Sintering {
     double log_density_change(const Motion& motion) const;
     double first_duration() const;
     void apply(const Trial& trial, double duration);
-    void count_contacts(StepRecord& record) const;
 
     State state_;
     std::vector<std::int32_t> order_;  // row in the input of each present row

@@ -130,7 +130,7 @@ TEST_CASE("simple, body-centred and face-centred cubic cells follow s^3 = s0^3 +
         numerics::StepRecord record{};
         while (sintering.time() < time) record = sintering.advance(time, endless);
         CHECK(deviation(sintering.relative_density(), loose / std::pow(1.0 - reached, 3)) < 1e-5);
-        CHECK(record.coordination_number == lattice.coordination);
+        CHECK(record.contacts.coordination_number == lattice.coordination);
     }
 }
 

@@ -11,15 +11,6 @@ namespace {
 
 constexpr double least_width = 3.0;  // of the inner region, in mean diameters
 
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t row) {
-    while (parent[static_cast<std::size_t>(row)] != row) {
-        std::int32_t& above = parent[static_cast<std::size_t>(row)];
-        above = parent[static_cast<std::size_t>(above)];
-        row = above;
-    }
-    return row;
-}
-
 /// Volume of each particle with half of each of its bonds, m3.
 std::vector<double> solid_volumes(const State& state) {
     std::vector<double> volume(state.particles.size());
@@ -56,12 +47,10 @@ double mean_overlap_ratio(const State& state, const std::vector<Pair>& contacts)
 
 double largest_cluster_fraction(std::size_t particles, const std::vector<Pair>& contacts) {
     if (particles == 0) return 0.0;
-    std::vector<std::int32_t> parent(particles);
-    std::iota(parent.begin(), parent.end(), 0);
-    for (const Pair& pair : contacts) parent[static_cast<std::size_t>(root_of(parent, pair.i))] = root_of(parent, pair.j);
+    Clusters clusters(particles);
+    for (const Pair& pair : contacts) clusters.join(pair.i, pair.j);
     std::vector<std::size_t> members(particles);
-    for (std::int32_t row = 0; row < static_cast<std::int32_t>(particles); ++row)
-        ++members[static_cast<std::size_t>(root_of(parent, row))];
+    for (std::int32_t row = 0; row < static_cast<std::int32_t>(particles); ++row) ++members[static_cast<std::size_t>(clusters.root(row))];
     return static_cast<double>(std::ranges::max(members)) / static_cast<double>(particles);
 }
 

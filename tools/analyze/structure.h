@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/neighbours.h"
+#include "core/contacts.h"
 #include "core/state.h"
 
 namespace kiln::analyze {

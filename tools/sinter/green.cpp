@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "cli/progress.h"
+#include "core/contacts.h"
 #include "io/files.h"
 #include "io/state_io.h"
 #include "physics/materials.h"
@@ -51,7 +52,8 @@ std::string name_of(Method method) {
 }
 
 Json summary_of(const PackingOptions& options, const State& state) {
-    const Contacts contacts = contacts_of(state.box, state.particles);
+    const std::vector<Pair> pairs = find_pairs(state.box, state.particles.position, state.particles.radius);
+    const ContactStatistics contacts = contact_statistics(state.box, state.particles, pairs);
     return {{"method", name_of(options.method)},
             {"seed", options.seed},
             {"coordination_number", contacts.coordination_number},

@@ -88,14 +88,4 @@ State pack(const PackingOptions& options, const std::function<bool(const Relaxat
     return state;
 }
 
-Contacts contacts_of(const Box& box, const Particles& particles) {
-    const std::vector<Pair> pairs = find_pairs(box, particles.position, particles.radius);
-    double sum = 0.0;
-    for (const Pair& pair : pairs)
-        sum += 1.0 - pair_vector(box, particles.position, pair).norm() /
-                         (particles.radius[static_cast<std::size_t>(pair.i)] + particles.radius[static_cast<std::size_t>(pair.j)]);
-    const double contacts = static_cast<double>(pairs.size());
-    return {2.0 * contacts / static_cast<double>(particles.size()), pairs.empty() ? 0.0 : sum / contacts};
-}
-
 }  // namespace kiln::sinter

@@ -33,11 +33,4 @@ struct PackingOptions {
 /// Throws Error where the density cannot be reached, and where watch ended the relaxation.
 State pack(const PackingOptions& options, const std::function<bool(const Relaxation&)>& watch);
 
-struct Contacts {
-    double coordination_number;  // contacts of a particle, mean of all particles
-    double mean_overlap_ratio;   // h/(r_i + r_j), for equal spheres h/2R, mean of the contacts; zero without contacts
-};
-
-Contacts contacts_of(const Box& box, const Particles& particles);
-
 }  // namespace kiln::sinter

@@ -25,9 +25,13 @@ int sinter_states(int argc, char** argv) {
     if (!options.history.empty()) history.emplace(options.history, true);
     cli::Progress progress("sinter", common);
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
+    const auto warn = [&](const std::string& sentence) {
+        progress.clear();
+        if (!common.quiet) cli::warn("sinter", sentence);
+    };
     bool converged = true;
     while (auto state = input.next_state()) {
-        converged = sinter::sinter(std::move(*state), options, {states, history ? &*history : nullptr, progress, entry}) && converged;
+        converged = sinter::sinter(std::move(*state), options, {states, history ? &*history : nullptr, progress, entry, warn}) && converged;
         if (cli::stop_requested()) break;
     }
     progress.clear();

@@ -20,8 +20,8 @@ Json summary_of(const numerics::StepRecord& record) {
             {"duration", record.duration},
             {"relative_density", record.relative_density},
             {"strain", {record.strain[0], record.strain[1], record.strain[2]}},
-            {"coordination_number", record.coordination_number},
-            {"mean_overlap_ratio", record.mean_overlap_ratio},
+            {"coordination_number", record.contacts.coordination_number},
+            {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
             {"density_error", record.error},
             {"attempts", record.attempts},
             {"newton", record.newton},
@@ -92,6 +92,8 @@ bool sinter(State state, const Options& options, const Sinks& sinks) {
         summary["temperature"] = options.temperature;
         if (sinks.history) sinks.history->write(summary);
         sinks.progress.detail(summary);
+        if (density <= validity_limit && record.relative_density > validity_limit)
+            sinks.warn("above a relative density of 0.9 grains grow, which this model leaves out");
         density = record.relative_density;
         sinks.progress.show(wanted.fraction(options, density, first_density, record.time),
                             "relative density " + Json(std::round(1e4 * density) / 1e4).dump());

@@ -1,6 +1,9 @@
 // run.h: sinters one state through all wanted densities and times.
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "cli/progress.h"
 #include "io/files.h"
 #include "options.h"
@@ -12,7 +15,8 @@ struct Sinks {
     io::Output& states;
     io::Output* history;  // or nothing
     cli::Progress& progress;
-    std::function<Json(const Json& summary)> entry;  // history entry of a state from its summary
+    std::function<Json(const Json& summary)> entry;       // history entry of a state from its summary
+    std::function<void(const std::string& sentence)> warn;
 };
 
 /// Sinters the state and writes a state at each wanted density and time, in the order in which they are reached.

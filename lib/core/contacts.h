@@ -1,0 +1,35 @@
+// contacts.h: what the contacts of a packing look like from afar: coordination, overlap, clusters.
+#pragma once
+
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "core/neighbours.h"
+#include "core/state.h"
+
+namespace kiln {
+
+struct ContactStatistics {
+    double coordination_number;  // contacts of a particle, mean of all particles
+    double mean_overlap_ratio;   // h/(r_i + r_j), for equal spheres h/2R, mean of the contacts; zero without contacts
+};
+
+/// Statistics of the pairs that touch; the others are left out.
+ContactStatistics contact_statistics(const Box& box, const Particles& particles, std::span<const Pair> pairs);
+
+/// Groups of rows that grow as rows are joined (union-find).
+class Clusters {
+   public:
+    explicit Clusters(std::size_t rows) : parent_(rows) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+    /// The lowest row of the cluster that a row is in.
+    std::int32_t root(std::int32_t row);
+
+    void join(std::int32_t a, std::int32_t b);
+
+   private:
+    std::vector<std::int32_t> parent_;
+};
+
+}  // namespace kiln
