@@ -26,7 +26,7 @@ std::int32_t Clusters::root(std::int32_t row) {
 }
 
 void Clusters::join(std::int32_t a, std::int32_t b) {
-    const auto [low, high] = std::minmax(root(a), root(b));
+    const auto [low, high] = std::minmax({root(a), root(b)});
     parent_[static_cast<std::size_t>(high)] = low;
 }
 
