@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/bending.h"
 
@@ -77,17 +78,19 @@ Level peak_level(Levels& levels, const Specimen& specimen, const Fixture& fixtur
     double force = estimated_force(specimen, fixture, wanted);
     levels.seat(seating_force * force);
     Level level = levels.trial(force, result);
-    Level before{};
+    // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
+    double slope = level.point.force / level.point.deflection;
+    bool exact = false;
     for (int trial = 0; trial < most_trials; ++trial) {
-        // Secant through the last two points; at first through the origin.
-        const double slope = (level.point.force - before.point.force) / (level.point.deflection - before.point.deflection);
         const double missing = wanted - level.point.deflection;
+        if (exact && std::abs(missing) <= deflection_tolerance * wanted) return level;
         force = level.point.force + slope * missing;
         if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the wanted deflection");
-        before = level;
-        const bool near = std::abs(missing) <= std::sqrt(deflection_tolerance) * wanted;
-        level = near ? levels.at(force, result) : levels.trial(force, result);
-        if (near && std::abs(wanted - level.point.deflection) <= deflection_tolerance * wanted) return level;
+        const Level before = level;
+        const bool was_exact = std::exchange(exact, std::abs(missing) <= std::sqrt(deflection_tolerance) * wanted);
+        level = exact ? levels.at(force, result) : levels.trial(force, result);
+        const double covered = level.point.deflection - before.point.deflection;
+        if (exact == was_exact && covered != 0.0) slope = (level.point.force - before.point.force) / covered;
     }
     throw Error("no punch force was found that gives the wanted deflection");
 }
@@ -126,6 +129,7 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     result.peak = std::move(equilibria.last());
     result.contacts = static_cast<std::size_t>(
         std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(), [](double force) { return force > 0.0; }));
+    result.closed_gaps = closed_gaps(result.specimen, result.peak.displacement);
     const double greatest = levels.back().point.force;
     for (int point = options.points - 1; point > 0; --point) {
         if (!watch(1.0 - static_cast<double>(point) / options.points)) return result;
