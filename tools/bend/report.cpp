@@ -29,6 +29,7 @@ Json summary(const Result& result) {
             {"fragment_particles", body.fragment_particles},
             {"rattlers", body.rattlers},
             {"contacts", result.contacts},
+            {"closed_gaps", result.closed_gaps},
             {"converged", result.converged}};
 }
 

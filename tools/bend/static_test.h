@@ -20,6 +20,7 @@ struct Result {
     std::vector<Point> curve;         // all cycles
     mechanics::Equilibrium peak;      // under the greatest force
     std::size_t contacts = 0;         // that carry force there
+    std::size_t closed_gaps = 0;      // pairs without a bond that come to touch there
     int iterations = 0;               // of the linear solver, in all
     double residual = 0.0;            // greatest of all equilibria
     double energy_error = 0.0;        // work of the punch from the first point to the peak against the energy stored, relative
