@@ -36,7 +36,7 @@ PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
 all: $(PROGRAMS)                ## build the four programs into build/bin
 
 help:                           ## list the targets
-	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/:/' | column -t -s :
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/:/' | column -t -s :
 
 # ---- dependencies from Debian -------------------------------------------------------------------------------------------------
 include packages.mk

@@ -32,4 +32,8 @@ class Clusters {
     std::vector<std::int32_t> parent_;
 };
 
+/// Axes along which a group of touching particles reaches its own periodic image. Along another axis nothing in the packing resists
+/// or drives a change of the box. rows: number of particles; pairs: those that touch.
+std::array<bool, 3> percolating_axes(std::size_t rows, std::span<const Pair> pairs);
+
 }  // namespace kiln

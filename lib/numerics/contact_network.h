@@ -43,7 +43,7 @@ class ContactNetwork {
     template <typename Work>
     void for_chunks(const Work& work) const {
         const auto count = static_cast<std::int64_t>(chunks_.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count >= fewest_parallel)
         for (std::int64_t index = 0; index < count; ++index) work(static_cast<std::size_t>(index));
     }
 
@@ -84,6 +84,7 @@ class ContactNetwork {
     std::vector<double> normal, tangential;     // stiffness of the entry, N/m
 
    private:
+    static constexpr std::int64_t fewest_parallel = 5;  // chunks; below, threads wait for each other longer than they work
     static constexpr std::uint8_t own_first = 1, own_second = 2;
     template <bool AddFirst, bool AddSecond, typename Force>
     void gather_range(std::size_t begin, std::size_t end, const double* total, double* forces, const Force& force) const;

@@ -19,7 +19,6 @@ namespace kiln::numerics {
 
 /// What one pair brings into a step. Geometry is that at the start of the step.
 struct PairStep {
-    std::size_t row;         // in the list of pairs it was made from
     Vec3 vector;             // l, from i to j, m
     double distance;         // |l|, m
     double overlap;          // h, m; negative for a gap

@@ -82,14 +82,14 @@ void Sintering::find_pairs_with_margin(double closing) {
     }
 }
 
-std::vector<PairStep> Sintering::pair_steps(double duration, const std::vector<Pair>& pairs) const {
+void Sintering::fill_pair_steps(double duration) {
     const Particles& particles = state_.particles;
-    std::vector<PairStep> steps(pairs.size());
+    const std::vector<Pair>& pairs = pairs_;
+    pair_steps_.resize(pairs.size());
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < pairs.size(); ++row) {
         const auto i = static_cast<std::size_t>(pairs[row].i), j = static_cast<std::size_t>(pairs[row].j);
-        PairStep& step = steps[row];
-        step.row = row;
+        PairStep& step = pair_steps_[row];
         step.vector = pair_vector(state_.box, particles.position, pairs[row]);
         step.distance = step.vector.norm();
         step.overlap = particles.radius[i] + particles.radius[j] - step.distance;
@@ -100,21 +100,20 @@ std::vector<PairStep> Sintering::pair_steps(double duration, const std::vector<P
         step.diffusion = diffusion_over(a, b, duration);
         step.cubic = physics::normal_viscosity_factor(settings_.step.constants, step.reduced_radius) / step.diffusion;
     }
-    return steps;
 }
 
-double Sintering::first_duration() const {
-    const std::vector<PairStep> steps = pair_steps(1.0, pairs_);  // of one second
+double Sintering::first_duration() {
+    fill_pair_steps(1.0);  // of one second
     double shortest = std::numeric_limits<double>::infinity();
     double overlap = 0.0;
     std::size_t contacts = 0;
-    for (const PairStep& step : steps)
+    for (const PairStep& step : pair_steps_)
         if (step.overlap >= 0.0) {
             overlap += step.overlap / step.reduced_radius;
             ++contacts;
         }
     if (contacts > 0) overlap /= static_cast<double>(contacts);
-    for (const PairStep& step : steps) {  // time in which a pair of mean overlap closes by first_closing
+    for (const PairStep& step : pair_steps_) {  // time in which a pair of mean overlap closes by first_closing
         const double start = overlap * step.reduced_radius, end = start + 2.0 * first_closing * step.reduced_radius;
         shortest = std::min(shortest, step.cubic * (end * end * end - start * start * start) / (3.0 * step.force));
     }
@@ -140,16 +139,22 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
     double closing = last_duration_ > 0.0 ? 1.2 * last_closing_ * std::max(1.0, duration / last_duration_) : 0.5 * margin_left_;
     for (;;) {
         if (margin_left_ < closing) find_pairs_with_margin(closing);
-        std::vector<Pair> active;
-        std::vector<PairStep> steps;
-        for (const PairStep& step : pair_steps(duration, pairs_)) {
-            if (step.overlap <= -closing) continue;
-            active.push_back(pairs_[step.row]);
-            steps.push_back(step);
+        fill_pair_steps(duration);
+        active_.clear();
+        active_steps_.clear();
+        for (std::size_t row = 0; row < pairs_.size(); ++row) {
+            if (pair_steps_[row].overlap <= -closing) continue;
+            active_.push_back(pairs_[row]);
+            active_steps_.push_back(pair_steps_[row]);
         }
-        SinterStep solver(state_.box, state_.particles.position, active, settings);
+        touching_.clear();
+        for (std::size_t row = 0; row < active_.size(); ++row)
+            if (active_steps_[row].overlap >= 0.0) touching_.push_back(active_[row]);
+        const std::array<bool, 3> percolates = percolating_axes(state_.particles.size(), touching_);
+        for (std::size_t axis = 0; axis < 3; ++axis) settings.free_axis[axis] = settings_.step.free_axis[axis] && percolates[axis];
+        SinterStep solver(state_.box, state_.particles.position, active_, settings);
         Trial trial;
-        trial.report = solver.solve(steps, trial.motion, trial.first_order);
+        trial.report = solver.solve(active_steps_, trial.motion, trial.first_order);
         newton_ += trial.report.newton;
         conjugate_gradients_ += trial.report.conjugate_gradients;
         const double reached = closing_bound(trial.motion);

@@ -56,11 +56,11 @@ class Sintering {
     double diffusion_over(std::int32_t a, std::int32_t b, double duration) const;
     void find_pairs_with_margin(double closing);
     double closing_bound(const Motion& motion) const;
-    std::vector<PairStep> pair_steps(double duration, const std::vector<Pair>& pairs) const;
+    void fill_pair_steps(double duration);
     Trial attempt(double duration, bool tight);
     Trial land_on(double log_change, double& duration, const Trial& beyond);
     double log_density_change(const Motion& motion) const;
-    double first_duration() const;
+    double first_duration();
     void apply(const Trial& trial, double duration);
 
     State state_;
@@ -68,7 +68,8 @@ class Sintering {
     SinteringSettings settings_;
     std::vector<double> diffusion_;    // Delta of each pair of materials, m5/(N s)
     std::vector<double> energy_;       // gamma of each pair of materials, J/m2
-    std::vector<Pair> pairs_;
+    std::vector<Pair> pairs_, active_, touching_;  // all within the margin; those that may touch in the step; those that do
+    std::vector<PairStep> pair_steps_, active_steps_;
     double margin_left_ = -1.0;        // closing that the list of pairs still covers, m
     double largest_radius_ = 0.0;      // m
     double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m

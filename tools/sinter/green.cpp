@@ -66,7 +66,7 @@ Json summary_of(const PackingOptions& options, const State& state) {
 int green(int argc, char** argv) {
     CLI::App app(
         "Makes a green body: random spheres in a periodic box at a relative density.\n\n"
-        "  sinter green -n 99000 --diameter 100nm --density 0.43 | sinter --to-density 0.67 -o sintered.dem",
+        "  sinter green -n 99000 --diameter 100nm --density 0.43 | sinter --to-density 0.67 -o sintered.kiln",
         "sinter green");
     GreenOptions options;
     options.add_to(app);

@@ -18,6 +18,7 @@ int sinter_states(int argc, char** argv) {
     options.add_to(app);
     cli::parse(app, argc, argv, common);
     options.check();
+    cli::return_freed_memory();
 
     io::Input input(common.files);
     io::Output states(common.output, common.text);

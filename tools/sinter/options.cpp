@@ -22,9 +22,9 @@ void Options::add_to(CLI::App& app) {
         "Reads states, sinters each, and writes a state at every wanted density or time.\n"
         "`sinter green --help` describes the command that makes green bodies.\n\n"
         "Examples:\n"
-        "  sinter green -n 6000 --density 0.43 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.dem\n"
-        "  sinter --temperature 1200C --at-time 10min,1h --history history.jsonl green.dem | analyze density --table\n"
-        "  sinter --temperature 1473K --to-density 0.79 < green.dem | bondify | analyze bonds");
+        "  sinter green -n 6000 --density 0.43 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.kiln\n"
+        "  sinter --temperature 1200C --at-time 10min,1h --history history.jsonl green.kiln | analyze density --table\n"
+        "  sinter --temperature 1473K --to-density 0.79 < green.kiln | bondify | analyze bonds");
 }
 
 void Options::check() const {
