@@ -11,7 +11,8 @@ namespace kiln::mechanics {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-/// Six values a particle: force (N) and moment over the rotation length (N), or displacement (m) and rotation times that length (m).
+/// Six values a particle: force (N) and moment over the rotation length (N), or displacement (m) and rotation times that length
+/// (m).
 using Vector = std::vector<Vec6>;
 
 /// Compressed rows; columns ascend within a row.

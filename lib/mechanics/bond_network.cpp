@@ -88,30 +88,28 @@ std::vector<std::int32_t> carrying_bonds(const State& state) {
 std::vector<std::int32_t> along_x(const Particles& particles) {
     std::vector<std::int32_t> order(particles.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        return particles.position[at(a)][0] < particles.position[at(b)][0];
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int32_t a, std::int32_t b) { return particles.position[at(a)][0] < particles.position[at(b)][0]; });
     return order;
 }
 
-void add_bond(BondedBody& body, const State& state, const BondModel& model, const std::vector<Moduli>& moduli,
-              std::int32_t row, std::array<std::int32_t, 2> nodes) {
+void add_bond(BondedBody& body, const State& state, const BondModel& model, const std::vector<Moduli>& moduli, std::int32_t row,
+              std::array<std::int32_t, 2> nodes) {
     const Bonds& bonds = *state.bonds;
     const auto [first, second] = bonds.pair[at(row)];
     const Vec3 vector = bond_vector(state, bonds, at(row));
     if (vector.norm() == 0.0) {
-        throw Error("bond " + std::to_string(row) + ": the centres of particles " +
-                    std::to_string(state.particles.id[at(first)]) + " and " + std::to_string(state.particles.id[at(second)]) +
-                    " coincide");
+        throw Error("bond " + std::to_string(row) + ": the centres of particles " + std::to_string(state.particles.id[at(first)]) +
+                    " and " + std::to_string(state.particles.id[at(second)]) + " coincide");
     }
     const Moduli a = moduli[at(state.particles.material[at(first)])];
     const Moduli b = moduli[at(state.particles.material[at(second)])];
     body.network.pair.push_back(nodes);
     body.network.vector.push_back(vector);
-    body.network.stiffness.push_back(physics::bond_stiffness(
-        model.law, model.shear, harmonic_mean(a.young, b.young), harmonic_mean(a.shear, b.shear),
-        {state.particles.radius[at(first)], state.particles.radius[at(second)], vector.norm(), bonds.radius[at(row)],
-         bonds.length[at(row)]}));
+    body.network.stiffness.push_back(physics::bond_stiffness(model.law, model.shear, harmonic_mean(a.young, b.young),
+                                                             harmonic_mean(a.shear, b.shear),
+                                                             {state.particles.radius[at(first)], state.particles.radius[at(second)],
+                                                              vector.norm(), bonds.radius[at(row)], bonds.length[at(row)]}));
     body.bond.push_back(row);
 }
 

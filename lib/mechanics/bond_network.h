@@ -12,12 +12,12 @@ namespace kiln::mechanics {
 
 /// Nodes with six freedoms each: displacement (m) and rotation (rad) times rotation_length (m).
 struct BondNetwork {
-    std::vector<Vec3> position;                    // m
-    Vec3 period = Vec3::Zero();                    // m, box length along a periodic axis, else 0
+    std::vector<Vec3> position;  // m
+    Vec3 period = Vec3::Zero();  // m, box length along a periodic axis, else 0
     std::vector<std::array<std::int32_t, 2>> pair;
-    std::vector<Vec3> vector;                      // m, from the first node to the second (or its image)
+    std::vector<Vec3> vector;  // m, from the first node to the second (or its image)
     std::vector<physics::BondStiffness> stiffness;
-    double rotation_length = 1.0;                  // m
+    double rotation_length = 1.0;  // m
 
     std::size_t nodes() const { return position.size(); }
     std::size_t bonds() const { return pair.size(); }
@@ -43,27 +43,30 @@ struct BondedBody {
 inline constexpr double negligible_radius = 1e-3;
 
 /// Network of the largest piece; nodes in an order that keeps neighbours together, from low x to high x. Bonds between unlike
-/// materials take the harmonic means of their moduli. Throws Error for a state without bonds or material data, or centres that coincide.
+/// materials take the harmonic means of their moduli. Throws Error for a state without bonds or material data, or centres that
+/// coincide.
 BondedBody bonded_body(const State& state, const BondModel& model);
 
 /// Node j relative to node i, m; the nearest image along periodic axes.
 Vec3 between(const BondNetwork& network, std::int32_t i, std::int32_t j);
 
-/// Symmetric matrix, N/m, positive semidefinite: zero energy for rigid motions of a free network and for translations of a periodic one.
+/// Symmetric matrix, N/m, positive semidefinite: zero energy for rigid motions of a free network and for translations of a periodic
+/// one.
 BlockMatrix stiffness_matrix(const BondNetwork& network);
 
 /// What a bond does to its second node is the opposite of `force`: tension pulls the first node along +vector.
 struct BondLoad {
-    Vec3 force;        // N, on the first node
-    Vec3 moment;       // N m, at the bond's middle, on the first node
-    double tension;    // N, along the bond, positive when it pulls
+    Vec3 force;      // N, on the first node
+    Vec3 moment;     // N m, at the bond's middle, on the first node
+    double tension;  // N, along the bond, positive when it pulls
 };
 
 /// Loads of all bonds under a displacement field and a uniform strain of the whole (symmetric 3x3; zero for a free network).
 std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement,
                                  const Eigen::Matrix3d& strain = Eigen::Matrix3d::Zero());
 
-/// Sum over the bonds at each node of what they do to it: minus the stiffness matrix times the displacement, when the strain is zero.
+/// Sum over the bonds at each node of what they do to it: minus the stiffness matrix times the displacement, when the strain is
+/// zero.
 Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads);
 
 }  // namespace kiln::mechanics

@@ -9,8 +9,8 @@
 
 namespace kiln::mechanics {
 
-/// Freedoms of one node near the middle that springs hold to the ground, so that the matrix has no rigid motion left. The springs are
-/// statically determinate: under loads in equilibrium they carry nothing, whatever their stiffness.
+/// Freedoms of one node near the middle that springs hold to the ground, so that the matrix has no rigid motion left. The springs
+/// are statically determinate: under loads in equilibrium they carry nothing, whatever their stiffness.
 enum class Ground {
     displacement_and_rotation,  // of a free body
     displacement,               // of a periodic one

@@ -67,7 +67,8 @@ ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double t
 IsotropicAverage isotropic_average(const Mat6& stiffness) {
     const Mat6 symmetric = (stiffness + stiffness.transpose()) / 2.0;
     const Eigen::LLT<Mat6> factor(symmetric);
-    if (factor.info() != Eigen::Success) throw Error("the elastic tensor is not positive definite: some strain meets no resistance");
+    if (factor.info() != Eigen::Success)
+        throw Error("the elastic tensor is not positive definite: some strain meets no resistance");
     const auto [bulk, shear] = voigt_moduli(symmetric);
     const auto [reuss_bulk, reuss_shear] = reuss_moduli(factor.solve(Mat6::Identity()));
     const double young = 9.0 * bulk * shear / (3.0 * bulk + shear);

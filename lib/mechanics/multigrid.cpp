@@ -10,11 +10,11 @@ namespace kiln::mechanics {
 
 namespace {
 
-constexpr std::int32_t coarsest_nodes = 150;     // factorised densely: 900 unknowns
+constexpr std::int32_t coarsest_nodes = 150;        // factorised densely: 900 unknowns
 constexpr double prolongation_damping = 4.0 / 3.0;  // over the largest eigenvalue (Vanek et al. 1996)
-constexpr double smoothed_part = 0.2;            // the smoother damps eigenvalues from this share of the largest one upwards
+constexpr double smoothed_part = 0.2;               // the smoother damps eigenvalues from this share of the largest one upwards
 constexpr int power_steps = 10;
-constexpr double power_margin = 1.1;             // the power iteration ends below the largest eigenvalue
+constexpr double power_margin = 1.1;  // the power iteration ends below the largest eigenvalue
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 

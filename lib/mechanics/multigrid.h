@@ -20,7 +20,8 @@ struct NodeGeometry {
 
 /// One V-cycle with polynomial smoothing: symmetric, positive definite, and independent of the number of threads.
 /// Vanek, Mandel & Brezina 1996 (smoothed aggregation); the aggregates' six rigid motions need no orthogonalisation, since a coarse
-/// node is again a point with a displacement and a rotation. Smoother: Chebyshev iteration on the block-Jacobi matrix (Adams et al. 2003).
+/// node is again a point with a displacement and a rotation. Smoother: Chebyshev iteration on the block-Jacobi matrix (Adams et al.
+/// 2003).
 class Multigrid {
    public:
     /// matrix: symmetric positive definite, kept by reference; largest_eigenvalue: bound for that of the block-Jacobi matrix.

@@ -14,9 +14,9 @@ namespace {
 constexpr double response_tolerance = 0.02;  // of one linear solve; the next one takes up what it leaves
 constexpr int most_fields = 120;
 constexpr int most_newton_steps = 500;
-constexpr double newton_tolerance = 1e-13;   // unbalanced force in the space over the punch force
-constexpr double second_pass = 0.1;          // share of a field's energy below which rounding calls for another orthogonalisation
-constexpr double least_novelty = 1e-10;      // energy of a field that is not in the space already
+constexpr double newton_tolerance = 1e-13;  // unbalanced force in the space over the punch force
+constexpr double second_pass = 0.1;         // share of a field's energy below which rounding calls for another orthogonalisation
+constexpr double least_novelty = 1e-10;     // energy of a field that is not in the space already
 
 std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
@@ -65,8 +65,7 @@ ContactProblem::Contacts ContactProblem::contacts_at(const Eigen::VectorXd& ampl
     const Eigen::VectorXd closed = closing_ * amplitude;
     for (Eigen::Index c = 0; c < closing_.rows(); ++c) {
         const WallContact& contact = contacts_[at(c)];
-        const auto hertz =
-            physics::hertz_contact(contact.modulus, contact.radius, (closed[c] - contact.gap) * contact.cosine);
+        const auto hertz = physics::hertz_contact(contact.modulus, contact.radius, (closed[c] - contact.gap) * contact.cosine);
         result.force[c] = hertz.force * contact.cosine;
         result.stiffness[c] = hertz.stiffness * contact.cosine * contact.cosine;
         result.energy += hertz.energy;
@@ -98,7 +97,8 @@ Eigen::MatrixXd ContactProblem::curvature(const Contacts& contacts) const {
     return matrix;
 }
 
-/// Moves the supports' and the punch's first contacts to the overlap that carries the force, so that no step starts without a contact.
+/// Moves the supports' and the punch's first contacts to the overlap that carries the force, so that no step starts without a
+/// contact.
 void ContactProblem::touch_all(double force) {
     if (amplitude_[0] != 0.0) return;
     double overlap = 0.0;
@@ -205,8 +205,7 @@ Equilibrium ContactProblem::solve(double force, double tolerance) {
         state.contact_force.assign(contacts.force.begin(), contacts.force.end());
         state.contact_energy = contacts.energy;
         state.bond_energy = energy({contacts.force, contacts.stiffness, 0.0}, amplitude_, 0.0);
-        state.punch_compliance =
-            curvature(contacts).ldlt().solve(Eigen::VectorXd::Unit(amplitude_.size(), 0))[0];
+        state.punch_compliance = curvature(contacts).ldlt().solve(Eigen::VectorXd::Unit(amplitude_.size(), 0))[0];
         return state;
     }
 }

@@ -12,11 +12,11 @@ namespace kiln::mechanics {
 /// remains. Hertz force at the overlap along the normal, and its share along z.
 struct WallContact {
     std::int32_t node;
-    bool punch;       // pressed from above by the punch, else from below by a support
-    double gap;       // m, along z, at rest with the punch travel zero
-    double cosine;    // of the angle between the contact normal and z
-    double radius;    // m, of the particle
-    double modulus;   // Pa, contact modulus
+    bool punch;      // pressed from above by the punch, else from below by a support
+    double gap;      // m, along z, at rest with the punch travel zero
+    double cosine;   // of the angle between the contact normal and z
+    double radius;   // m, of the particle
+    double modulus;  // Pa, contact modulus
 };
 
 struct Equilibrium {
@@ -31,10 +31,10 @@ struct Equilibrium {
     bool converged = false;
 };
 
-/// Finds equilibria under rising or falling punch forces. Total energy (bonds, Hertz contacts, punch) is convex. It is minimised over a
-/// growing space of displacement fields: first the body's rigid motions in the field of the contacts, then, one by one, the elastic
-/// response to the forces that the last minimum left unbalanced. The bonds' matrix is preconditioned once; a minimum in the space is a
-/// small dense problem; the space serves all forces.
+/// Finds equilibria under rising or falling punch forces. Total energy (bonds, Hertz contacts, punch) is convex. It is minimised
+/// over a growing space of displacement fields: first the body's rigid motions in the field of the contacts, then, one by one, the
+/// elastic response to the forces that the last minimum left unbalanced. The bonds' matrix is preconditioned once; a minimum in the
+/// space is a small dense problem; the space serves all forces.
 class ContactProblem {
    public:
     ContactProblem(const BondNetwork& network, ElasticSolver& solver, std::vector<WallContact> contacts);

@@ -44,19 +44,21 @@ struct BondCompliance {
     double transverse;  // integral of x2/I, 1/m
 };
 
-/// Sphere of radius R (m) cut at the distance s from its centre where its section has the radius of the bond, seen from the middle of
-/// a bond that begins at `arm` (m) beyond the cut. With the section pi (R2 - t2) at t from the centre, integrated from 0 to s:
-///   stretching atanh(s/R)/(pi R), bending (4/pi) [s/(2 R2 Rb2) + atanh(s/R)/(2 R3)]; transverse weights the latter with (s + arm - t)2.
+/// Sphere of radius R (m) cut at the distance s from its centre where its section has the radius of the bond, seen from the middle
+/// of a bond that begins at `arm` (m) beyond the cut. With the section pi (R2 - t2) at t from the centre, integrated from 0 to s:
+///   stretching atanh(s/R)/(pi R), bending (4/pi) [s/(2 R2 Rb2) + atanh(s/R)/(2 R3)]; transverse: the latter's integrand times
+///   (s + arm - t)2.
 BondCompliance sphere_compliance(double sphere_radius, double bond_radius, double arm);
 
 /// All compliances of a bond under a law; bond radius > 0.
 BondCompliance bond_compliance(BondLaw law, const BondGeometry& geometry);
 
 /// Elastic springs of a bond of Young's modulus E and shear modulus G, Pa:
-///   k_n = E / int 1/A,  k_torsion = 2 G / int 1/I,  k_bend = E / int 1/I  (Potyondy & Cundall 2004, Eq. 13, with A/L as the inverse
-///   integral), and k_t = G / int 1/A, or for Timoshenko's beam 1/k_t = int 1/A / (kappa G) + int x2/I / E with Cowper's (1966)
-///   kappa = 6 (1 + nu)/(7 + 6 nu) of the circle. A bond of radius zero has no stiffness.
-BondStiffness bond_stiffness(BondLaw law, BondShear shear, double young_modulus, double shear_modulus, const BondGeometry& geometry);
+///   k_n = E / int 1/A,  k_torsion = 2 G / int 1/I,  k_bend = E / int 1/I  (Potyondy & Cundall 2004, with A/L as
+///   the inverse integral), and k_t = G / int 1/A, or for Timoshenko's beam 1/k_t = int 1/A / (kappa G) + int x2/I / E with Cowper's
+///   (1966) kappa = 6 (1 + nu)/(7 + 6 nu) of the circle. A bond of radius zero has no stiffness.
+BondStiffness bond_stiffness(BondLaw law, BondShear shear, double young_modulus, double shear_modulus,
+                             const BondGeometry& geometry);
 
 /// The law's name on the command line and in results.
 std::string name_of(BondLaw law);

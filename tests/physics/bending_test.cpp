@@ -1,4 +1,5 @@
-// bending_test.cpp: static three-point bending against beam theory, its independence of scale, load and fixture, and its hard cases.
+// bending_test.cpp: static three-point bending against beam theory, its independence of scale, load and fixture, and its hard
+// cases.
 #include <doctest/doctest.h>
 #include <omp.h>
 
@@ -119,7 +120,8 @@ TEST_CASE("work of the punch is the energy stored; more points bring them closer
 
 TEST_CASE("the modulus does not depend on the scale, from 1 nm to 1 m") {
     const double modulus = modulus_of(tested(test::make_rough_bar({30, 6, 6})));
-    for (const double edge : {1e-9, 1.0}) CHECK(modulus_of(tested(test::make_rough_bar({30, 6, 6}, edge))) == relative(modulus, 1e-8));
+    for (const double edge : {1e-9, 1.0})
+        CHECK(modulus_of(tested(test::make_rough_bar({30, 6, 6}, edge))) == relative(modulus, 1e-8));
 }
 
 TEST_CASE("where the particles' images are does not matter") {

@@ -19,8 +19,8 @@ struct Lattice {
     double edge = 1e-7;                            // m
     double neighbour = 1.0;                        // bonds join centres at most that many edges (and 1 %) apart
     bool periodic = true;
-    double jitter = 0.0;                           // of each coordinate, in edges
-    bool random_radii = false;                     // of bonds, from thin to thick
+    double jitter = 0.0;        // of each coordinate, in edges
+    bool random_radii = false;  // of bonds, from thin to thick
 };
 
 /// Alumina spheres with bonds between neighbours.

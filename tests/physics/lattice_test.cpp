@@ -41,7 +41,8 @@ TEST_CASE("simple cubic: C11 = kn/l, C12 = 0, C44 = kt/(2 l), also in a cell of 
 
 TEST_CASE("face-centred cubic: C11 = sqrt2 (kn + kt)/l, C12 = (kn - kt)/(sqrt2 l), C44 = (kn + kt)/(sqrt2 l)") {
     for (const int cells : {1, 5}) {
-        const State state = test::make_lattice({.cells = {cells, cells, cells}, .basis = face_centred, .neighbour = std::sqrt(0.5)});
+        const State state =
+            test::make_lattice({.cells = {cells, cells, cells}, .basis = face_centred, .neighbour = std::sqrt(0.5)});
         const BondedBody body = bonded_body(state, {});
         CHECK(body.network.bonds() == 6 * body.network.nodes());
         const ElasticTensor tensor = elastic_tensor(body.network, state.box.volume(), 1e-10);
@@ -72,7 +73,8 @@ TEST_CASE("a disordered cell: symmetric tensor below the affine bound, the same 
 }
 
 TEST_CASE("averages of an isotropic tensor are its own constants; of a cubic one, Zener's ratio decides the anisotropy") {
-    const double young = 3.0, poisson = 0.2, shear = young / (2.0 * (1.0 + poisson)), lame = 2.0 * shear * poisson / (1.0 - 2.0 * poisson);
+    const double young = 3.0, poisson = 0.2, shear = young / (2.0 * (1.0 + poisson)),
+                 lame = 2.0 * shear * poisson / (1.0 - 2.0 * poisson);
     Mat6 stiffness = Mat6::Zero();
     stiffness.topLeftCorner<3, 3>().setConstant(lame);
     stiffness.diagonal().head<3>().array() += 2.0 * shear;

@@ -27,8 +27,7 @@ Vector balanced_load(const BondNetwork& network, std::size_t node, std::size_t h
 }
 
 State rough_bar(std::array<int, 3> cells) {
-    State state = test::make_lattice(
-        {.cells = cells, .neighbour = 1.25, .periodic = false, .jitter = 0.2, .random_radii = true});
+    State state = test::make_lattice({.cells = cells, .neighbour = 1.25, .periodic = false, .jitter = 0.2, .random_radii = true});
     return state;
 }
 
@@ -88,7 +87,8 @@ TEST_CASE("rigid motions store no energy and load no bond") {
     const BondNetwork network = bonded_body(rough_bar({9, 4, 4}), {}).network;
     const Vec3 turn(0.3, -0.2, 0.5), shift(1e-9, 2e-9, -1e-9);
     Vector motion(network.nodes());
-    for (std::size_t i = 0; i < network.nodes(); ++i) motion[i] << shift + turn.cross(network.position[i]), turn * network.rotation_length;
+    for (std::size_t i = 0; i < network.nodes(); ++i)
+        motion[i] << shift + turn.cross(network.position[i]), turn * network.rotation_length;
     Vector force;
     multiply(stiffness_matrix(network), motion, force);
     const double typical = network.stiffness.front().normal * norm(motion);

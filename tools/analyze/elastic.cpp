@@ -12,7 +12,8 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Keys: relative_density, stiffness (6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear), young_modulus (Pa) and poisson_ratio of "
+    "Keys: relative_density, stiffness (6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear), young_modulus (Pa) and poisson_ratio "
+    "of "
     "its isotropic (Voigt) average, anisotropy (0 for an isotropic tensor; Ranganathan & Ostoja-Starzewski 2008), affine (the same "
     "for particles that follow the strain: an upper bound), bond_law, iterations, residual, fragments, rattlers.\n"
     "Examples:\n"
@@ -36,7 +37,8 @@ Json rows_of(const mechanics::Mat6& matrix) {
 Json elastic_of(const State& state, const mechanics::BondModel& model, double tolerance, bool& converged) {
     const auto& periodic = state.box.periodic;
     if (!std::all_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; }))
-        throw Error("the box is not periodic along all axes, so the state has no elastic tensor; bend tests bodies with free faces");
+        throw Error(
+            "the box is not periodic along all axes, so the state has no elastic tensor; bend tests bodies with free faces");
     const mechanics::BondedBody body = mechanics::bonded_body(state, model);
     const mechanics::ElasticTensor tensor = mechanics::elastic_tensor(body.network, state.box.volume(), tolerance);
     const mechanics::IsotropicAverage average = mechanics::isotropic_average(tensor.stiffness);
@@ -71,7 +73,8 @@ int elastic(int argc, char** argv) {
     bool table = false;
     double tolerance = 1e-8;
     mechanics::BondModel model;
-    CLI::App app{"Elastic tensor of every state: a periodic cell of bonded particles under six uniform strains.", "analyze elastic"};
+    CLI::App app{"Elastic tensor of every state: a periodic cell of bonded particles under six uniform strains.",
+                 "analyze elastic"};
     app.footer(footer);
     add_table(app, table);
     cli::add_bond_model(app, model);

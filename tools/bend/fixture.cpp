@@ -16,7 +16,7 @@ namespace {
 constexpr double default_span = 0.8;     // of the length
 constexpr double default_radius = 0.75;  // of the height, as in ASTM C1161
 constexpr double steepest_cosine = 0.5;  // of a contact normal against z
-constexpr double reach = 0.1;            // of the height: particles that far behind the foremost one, and two radii more, may come to touch
+constexpr double reach = 0.1;  // of the height: particles that far behind the foremost one, and two radii more, may come to touch
 
 struct Sphere {
     std::int32_t node;
@@ -102,8 +102,8 @@ Fixture place_fixture(const Specimen& specimen, const Options& options) {
     const double left = fixture.middle - fixture.span / 2.0, right = fixture.middle + fixture.span / 2.0;
     if (low > left || high < right) {
         words << (body.fragments > 0 ? "the bar is in pieces: the largest, " : "the bar does not reach its supports: it has ")
-              << body.particle.size() << " of " << specimen.state.particles.size() << " particles, reaches from x = " << low << " to "
-              << high << " m, and the supports are at " << left << " and " << right << " m";
+              << body.particle.size() << " of " << specimen.state.particles.size() << " particles, reaches from x = " << low
+              << " to " << high << " m, and the supports are at " << left << " and " << right << " m";
         throw Error(words.str());
     }
     return fixture;

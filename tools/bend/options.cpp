@@ -12,8 +12,10 @@ namespace {
 
 constexpr const char* description =
     "Bends a bar of bonded particles on two supports under a punch: three rigid cylinders along y, the bar along x, the load along "
-    "-z. The bar is cut from the periodic box: bonds through the opened faces are dropped. Writes one dem-bend document a state, with "
-    "the curve of deflection (m, lower face under the load against the bar above its supports), punch travel (m) and force (N) over "
+    "-z. The bar is cut from the periodic box: bonds through the opened faces are dropped. Writes one dem-bend document a state, "
+    "with "
+    "the curve of deflection (m, lower face under the load against the bar above its supports), punch travel (m) and force (N) "
+    "over "
     "all cycles.";
 
 constexpr const char* footer =
@@ -36,12 +38,15 @@ void Options::add_to(CLI::App& app) {
                                          "deflection at which unloading begins", "0.001 of the bar's height");
     cli::add_quantity(app, "--max-force", max_force, Dimension::force, "force at which unloading begins, instead")
         ->excludes(deflection);
-    app.add_option("--cycles", cycles, "times that the bar is loaded and unloaded")->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--cycles", cycles, "times that the bar is loaded and unloaded")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     app.add_option("--points", points, "points of the curve in each branch, at equal steps of force")
         ->check(CLI::Range(3, 1000))
         ->capture_default_str();
     cli::add_bond_model(app, model);
-    app.add_option("--tolerance", tolerance, "unbalanced force over contact force at which an equilibrium is reached (plain number)")
+    app.add_option("--tolerance", tolerance,
+                   "unbalanced force over contact force at which an equilibrium is reached (plain number)")
         ->check(CLI::Range(1e-14, 1e-2))
         ->default_str("1e-6");
     app.add_option("--states", states, "also write the bar bent by the greatest force, with the forces in its bonds, to this file")

@@ -11,8 +11,8 @@ Json summary(const Result& result);
 /// The dem-bend document; history includes this run's entry.
 Json document(const Result& result, const Options& options, Json history);
 
-/// The bar under the greatest force: displaced particles with `displacement` (m) and `rotation` (rad); bonds with `force` (N, on the
-/// first particle), `normal_force` (N, tension positive) and `moment` (N m, on the first particle at the bond's middle).
+/// The bar under the greatest force: displaced particles with `displacement` (m) and `rotation` (rad); bonds with `force` (N, on
+/// the first particle), `normal_force` (N, tension positive) and `moment` (N m, on the first particle at the bond's middle).
 State bent_state(const Result& result, Json history);
 
 }  // namespace kiln::bend

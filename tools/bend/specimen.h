@@ -8,13 +8,13 @@ namespace kiln::bend {
 
 /// The bar along x, with its width along y and its height along z, m.
 struct Specimen {
-    State state;                     // the bar in a box without periodic faces
-    mechanics::BondedBody body;      // its largest piece
-    std::size_t dropped_bonds = 0;   // that went through opened faces
-    double relative_density = 0.0;   // of the state it was cut from
-    Vec3 origin, size;               // m, of the bar: the box along periodic axes, else what bonded particles reach
-    double young_modulus = 0.0;      // Pa, of the solid that most particles are made of
-    double poisson_ratio = 0.0;      // of the same
+    State state;                    // the bar in a box without periodic faces
+    mechanics::BondedBody body;     // its largest piece
+    std::size_t dropped_bonds = 0;  // that went through opened faces
+    double relative_density = 0.0;  // of the state it was cut from
+    Vec3 origin, size;              // m, of the bar: the box along periodic axes, else what bonded particles reach
+    double young_modulus = 0.0;     // Pa, of the solid that most particles are made of
+    double poisson_ratio = 0.0;     // of the same
 };
 
 /// The state opened along its periodic axes: particles wrapped into the box, bonds through its faces dropped.

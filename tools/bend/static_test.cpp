@@ -14,7 +14,7 @@ namespace {
 constexpr double default_deflection = 1e-3;  // of the height
 constexpr double seating_force = 1e-9;       // of the greatest force: where the punch's travel is zero
 constexpr double deflection_tolerance = 1e-6;
-constexpr double trial_tolerance = 1e-4;     // of equilibria that only tell how stiff the bar is
+constexpr double trial_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
 constexpr int most_trials = 12;
 
 struct Level {
@@ -127,8 +127,8 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     Levels equilibria(result.specimen, result.fixture, options.tolerance);
     std::vector<Level> levels{peak_level(equilibria, result.specimen, result.fixture, options, result)};
     result.peak = std::move(equilibria.last());
-    result.contacts = static_cast<std::size_t>(
-        std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(), [](double force) { return force > 0.0; }));
+    result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),
+                                                             [](double force) { return force > 0.0; }));
     result.closed_gaps = closed_gaps(result.specimen, result.peak.displacement);
     const double greatest = levels.back().point.force;
     for (int point = options.points - 1; point > 0; --point) {
