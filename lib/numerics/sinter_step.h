@@ -32,7 +32,7 @@ struct StepSettings {
     physics::ContactConstants constants;
     std::array<bool, 3> free_axis{true, true, true};  // may the box strain along this axis
     Vec3 pressure = Vec3::Zero();                     // Pa, compressive, along the free axes
-    double solver_tolerance = 1e-4;                   // relative error of a step's motion in the energy norm
+    double solver_tolerance = 1e-3;                   // relative error of a step's motion in the energy norm
     bool second_order = true;
 };
 

@@ -45,6 +45,7 @@ numerics::SinteringSettings Options::settings() const {
     settings.step.constants = constants;
     settings.temperature = temperature;
     settings.tolerance = tolerance;
+    settings.step.solver_tolerance = std::min(tolerance, settings.step.solver_tolerance);
     return settings;
 }
 
