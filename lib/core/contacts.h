@@ -33,7 +33,7 @@ class Clusters {
 };
 
 /// Axes along which a group of touching particles reaches its own periodic image. Along another axis nothing in the packing resists
-/// or drives a change of the box. rows: number of particles; pairs: those that touch.
+/// or drives a strain of the box. rows: number of particles; pairs: those that touch.
 std::array<bool, 3> percolating_axes(std::size_t rows, std::span<const Pair> pairs);
 
 }  // namespace kiln

@@ -36,29 +36,24 @@ void add(const ContactNetwork& network, double factor, const Motion& x, Motion& 
     y.strain += factor * x.strain;
 }
 
-void mask(Motion& motion, const std::array<bool, 3>& free_axis) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!free_axis[static_cast<std::size_t>(axis)]) motion.strain[axis] = 0.0;
-}
-
 ConjugateGradients::ConjugateGradients(std::size_t particles)
     : r_(particles), z_(particles), p_(particles), q_(particles), total_(3 * particles) {}
 
 LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preconditioner& preconditioner,
-                                      const std::array<bool, 3>& free_axis, const Motion& b, Motion& x, double tolerance,
+                                      const Eigen::Matrix3d& allowed, const Motion& b, Motion& x, double tolerance,
                                       int most_iterations) {
     std::fill(x.displacement.begin(), x.displacement.end(), 0.0);
     x.strain.setZero();
     std::fill(p_.displacement.begin(), p_.displacement.end(), 0.0);
     p_.strain.setZero();
     r_ = b;
-    mask(r_, free_axis);
+    project(r_, allowed);
     // Subtracts step * q from r, adds step * p to x, preconditions; gives the product of r and z.
     const auto advance = [&](double step) {
         x.strain += step * p_.strain;
         r_.strain -= step * q_.strain;
         preconditioner.apply_strain(r_, z_);
-        mask(z_, free_axis);
+        project(z_, allowed);
         return r_.strain.dot(z_.strain) + network.sum_chunks([&](std::size_t chunk) {
             const Range range = components(network, chunk);
             if (step != 0.0)
@@ -90,7 +85,7 @@ LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preco
         });
         q_.strain.setZero();
         for (const Vec3& part : work) q_.strain += part;
-        mask(q_, free_axis);
+        project(q_, allowed);
         return curvature + p_.strain.dot(q_.strain);
     };
 

@@ -14,12 +14,12 @@ struct LinearSolve {
 /// Solves K x = b from x = 0 until the residual's norm in the preconditioner falls below `tolerance` times that of b.
 ///
 /// A singular K (particles without contacts, clusters that hang on nothing) is allowed as long as b does no work on its null space.
-/// free_axis: axes along which the box may strain. Work vectors are kept between calls.
+/// allowed: projector onto the strains that the box may take. Work vectors are kept between calls.
 class ConjugateGradients {
    public:
     explicit ConjugateGradients(std::size_t particles);
 
-    LinearSolve solve(const ContactNetwork& network, const Preconditioner& preconditioner, const std::array<bool, 3>& free_axis,
+    LinearSolve solve(const ContactNetwork& network, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
                       const Motion& b, Motion& x, double tolerance, int most_iterations);
 
    private:
@@ -33,7 +33,7 @@ double dot(const ContactNetwork& network, const Motion& a, const Motion& b);
 /// y += factor * x.
 void add(const ContactNetwork& network, double factor, const Motion& x, Motion& y);
 
-/// Sets the strains of fixed axes to zero.
-void mask(Motion& motion, const std::array<bool, 3>& free_axis);
+/// Takes away the part of the strains that is not allowed.
+inline void project(Motion& motion, const Eigen::Matrix3d& allowed) { motion.strain = allowed * motion.strain; }
 
 }  // namespace kiln::numerics

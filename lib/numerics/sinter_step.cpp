@@ -110,7 +110,7 @@ void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion,
         return (force - resistance) * n + tangential_[row] * (du - along * n);
     });
     for (int axis = 0; axis < 3; ++axis) unbalanced.strain[axis] += settings_.pressure[axis] * box_.volume();
-    mask(unbalanced, settings_.free_axis);
+    project(unbalanced, settings_.allowed_strain);
     work_ = network.sum_chunks([&](std::size_t index) {
         double sum = 0.0;
         network.for_owned(index, [&](std::size_t entry) {
@@ -151,7 +151,7 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, dou
         preconditioner_.factorise(network_, vectors_);
         unbalanced_.strain *= -1.0;
         for (double& component : unbalanced_.displacement) component = -component;
-        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.free_axis, unbalanced_, direction_, linear_tolerance,
+        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, linear_tolerance,
                                                  most_conjugate_gradients);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;

@@ -30,7 +30,7 @@ struct PairStep {
 
 struct StepSettings {
     physics::ContactConstants constants;
-    std::array<bool, 3> free_axis{true, true, true};  // may the box strain along this axis
+    Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // Pa, compressive, along the free axes
     double solver_tolerance = 1e-3;                   // relative error of a step's motion in the energy norm
     bool second_order = true;

@@ -1,6 +1,7 @@
 // sintering.cpp: the loop around the implicit step.
 #include "numerics/sintering.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -37,7 +38,7 @@ Sintering::Sintering(State state, const SinteringSettings& settings) : state_(st
     particles = take_rows(particles, order_);
     for (Vec3& position : particles.position) position = state_.box.wrap(position);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!state_.box.periodic[axis]) settings_.step.free_axis[axis] = false;
+        free_axis_[axis] = state_.box.periodic[axis];
 
     std::vector<double> diffusion, energy;
     for (const Material& material : state_.materials) {
@@ -132,6 +133,24 @@ double Sintering::closing_bound(const Motion& motion) const {
     return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * (2.0 * largest_radius_ + margin_left_);
 }
 
+Eigen::Matrix3d Sintering::allowed_strain() const {
+    // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that contacts
+    // do reach through, so that loose clusters move with the flow of the whole.
+    const std::array<bool, 3> percolates = percolating_axes(state_.particles.size(), touching_);
+    std::vector<Vec3> basis;
+    Vec3 followers = Vec3::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Vec3 along = Vec3::Unit(static_cast<Eigen::Index>(axis));
+        if (free_axis_[axis] && percolates[axis]) basis.push_back(along);
+        if (free_axis_[axis] && !percolates[axis]) followers += along;
+    }
+    if (basis.empty()) return Eigen::Matrix3d::Zero();
+    Eigen::MatrixXd columns(3, basis.size());
+    for (std::size_t k = 0; k < basis.size(); ++k)
+        columns.col(static_cast<Eigen::Index>(k)) = basis[k] + followers / static_cast<double>(basis.size());
+    return columns * (columns.transpose() * columns).ldlt().solve(columns.transpose());
+}
+
 Sintering::Trial Sintering::attempt(double duration, bool tight) {
     StepSettings settings = settings_.step;
     if (tight) settings.solver_tolerance *= landing_solver;
@@ -150,8 +169,7 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
         touching_.clear();
         for (std::size_t row = 0; row < active_.size(); ++row)
             if (active_steps_[row].overlap >= 0.0) touching_.push_back(active_[row]);
-        const std::array<bool, 3> percolates = percolating_axes(state_.particles.size(), touching_);
-        for (std::size_t axis = 0; axis < 3; ++axis) settings.free_axis[axis] = settings_.step.free_axis[axis] && percolates[axis];
+        settings.allowed_strain = allowed_strain();
         SinterStep solver(state_.box, state_.particles.position, active_, settings);
         Trial trial;
         trial.report = solver.solve(active_steps_, trial.motion, trial.first_order);

@@ -55,6 +55,7 @@ class Sintering {
     };
     double diffusion_over(std::int32_t a, std::int32_t b, double duration) const;
     void find_pairs_with_margin(double closing);
+    Eigen::Matrix3d allowed_strain() const;
     double closing_bound(const Motion& motion) const;
     void fill_pair_steps(double duration);
     Trial attempt(double duration, bool tight);
@@ -71,6 +72,7 @@ class Sintering {
     std::vector<Pair> pairs_, active_, touching_;  // all within the margin; those that may touch in the step; those that do
     std::vector<PairStep> pair_steps_, active_steps_;
     double margin_left_ = -1.0;        // closing that the list of pairs still covers, m
+    std::array<bool, 3> free_axis_{true, true, true};  // may the box strain along this axis
     double largest_radius_ = 0.0;      // m
     double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m
     double last_duration_ = 0.0, next_duration_ = 0.0;

@@ -171,7 +171,7 @@ TEST_CASE("particles without contacts move with the box, and a density that noth
         doctest::Contains("cannot be reached"), Error);
 }
 
-TEST_CASE("the box strains only along axes that the contacts reach through") {
+TEST_CASE("axes that no contacts reach through follow those that contacts do reach through") {
     const double radius = 50e-9, spacing = 2.0 * radius - 1e-9;
     State rod = state_of({{0.5 * spacing, 3e-7, 3e-7}, {1.5 * spacing, 3e-7, 3e-7}}, {radius, radius}, {2.0 * spacing, 6e-7, 6e-7}, true);
     numerics::Sintering sintering(std::move(rod), settings());
@@ -179,8 +179,8 @@ TEST_CASE("the box strains only along axes that the contacts reach through") {
     while (sintering.time() < time) sintering.advance(time, endless);
     const Vec3 lengths = sintering.state().box.lengths;
     CHECK(deviation(2.0 * radius - 0.5 * lengths[0], pair_law(1e-9, 0.5 * radius, time)) < 1e-6);
-    CHECK(lengths[1] == 6e-7);
-    CHECK(lengths[2] == 6e-7);
+    CHECK(deviation(lengths[1] / 6e-7, lengths[0] / (2.0 * spacing)) < 1e-12);
+    CHECK(deviation(lengths[2], lengths[1]) < 1e-12);
 }
 
 TEST_CASE("two clusters that never touch densify each by itself and stay where the box carries them") {
