@@ -15,6 +15,7 @@ namespace kiln::numerics {
 namespace {
 
 constexpr double list_margin = 0.06;           // of a radius, that the list of pairs reaches beyond touch
+constexpr double largest_closing = 1.0;        // of the mean radius, of any gap in a step
 constexpr double largest_log_step = 0.05;      // of the density
 constexpr double first_closing = 2e-3;         // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;     // error of the second-order step over (difference of the orders times log step)
@@ -34,6 +35,7 @@ Sintering::Sintering(State state, const SinteringSettings& settings) : state_(st
     if (particles.size() == 0) throw Error("the state has no particles");
     if (state_.bonds) throw Error("the state has bonds; sintering takes a packing without them");
     largest_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());
+    mean_radius_ = std::cbrt(particle_volume(particles) / static_cast<double>(particles.size()) * 0.75 / std::numbers::pi);
     order_ = spatial_order(state_.box, particles.position, 2.0 * largest_radius_);
     particles = take_rows(particles, order_);
     for (Vec3& position : particles.position) position = state_.box.wrap(position);
@@ -70,8 +72,7 @@ double Sintering::diffusion_over(std::int32_t a, std::int32_t b, double duration
 
 void Sintering::find_pairs_with_margin(double closing) {
     const Particles& particles = state_.particles;
-    const double mean = std::cbrt(particle_volume(particles) / static_cast<double>(particles.size()) * 0.75 / std::numbers::pi);
-    margin_left_ = std::max(list_margin * mean, 3.0 * closing);
+    margin_left_ = std::max(list_margin * mean_radius_, 1.5 * closing);
     std::vector<double> reach = particles.radius;
     for (double& each : reach) each += 0.5 * margin_left_;
     pairs_ = find_pairs(state_.box, particles.position, reach);
@@ -156,6 +157,7 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
     if (tight) settings.solver_tolerance *= landing_solver;
     ++attempts_;
     double closing = last_duration_ > 0.0 ? 1.2 * last_closing_ * std::max(1.0, duration / last_duration_) : 0.5 * margin_left_;
+    closing = std::min(closing, largest_closing * mean_radius_);
     for (;;) {
         if (margin_left_ < closing) find_pairs_with_margin(closing);
         fill_pair_steps(duration);
@@ -176,6 +178,11 @@ Sintering::Trial Sintering::attempt(double duration, bool tight) {
         newton_ += trial.report.newton;
         conjugate_gradients_ += trial.report.conjugate_gradients;
         const double reached = closing_bound(trial.motion);
+        if (reached > largest_closing * mean_radius_) {  // no list of pairs is made for such a leap: the step is too long
+            trial.report.converged = false;
+            trial.closing = reached;
+            return trial;
+        }
         if (reached > closing) {  // pairs that were left out might have come to touch
             closing = 1.2 * reached;
             continue;

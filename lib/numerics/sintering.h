@@ -73,7 +73,7 @@ class Sintering {
     std::vector<PairStep> pair_steps_, active_steps_;
     double margin_left_ = -1.0;        // closing that the list of pairs still covers, m
     std::array<bool, 3> free_axis_{true, true, true};  // may the box strain along this axis
-    double largest_radius_ = 0.0;      // m
+    double largest_radius_ = 0.0, mean_radius_ = 0.0;  // m; the mean is that of volume
     double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m
     double last_duration_ = 0.0, next_duration_ = 0.0;
     double density_ = 0.0, error_ = 0.0;
