@@ -36,7 +36,8 @@ struct Finished {};
 
 /// Options that change where or how a result is written, not the result.
 constexpr std::array without_bearing{"--help",  "--version", "--config",  "--output", "--text",
-                                     "--quiet", "--verbose", "--threads", "--history", "--states", "files"};
+                                     "--quiet", "--verbose", "--threads", "--history", "--states", "--checkpoint", "--checkpoint-every",
+                                     "--resume", "files"};
 
 /// The text without line ends and what else a terminal would act on; names in it come from files.
 std::string one_line(std::string text) {

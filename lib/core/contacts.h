@@ -1,6 +1,7 @@
 // contacts.h: what the contacts of a packing look like from afar: coordination, overlap, clusters.
 #pragma once
 
+#include <array>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -30,6 +31,28 @@ class Clusters {
 
    private:
     std::vector<std::int32_t> parent_;
+};
+
+/// Clusters of a periodic packing: each row knows by which image it is seen from the row that stands for its cluster.
+class PeriodicClusters {
+   public:
+    using Offset = std::array<int, 3>;
+
+    explicit PeriodicClusters(std::size_t rows) : parent_(rows), offset_(rows, Offset{0, 0, 0}) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+    /// The row that stands for the cluster of a row, and the image by which the row is seen from it along the cluster's contacts.
+    std::int32_t root(std::int32_t row, Offset& image);
+
+    /// Joins the rows of a pair. Where they are joined already, and the pair leads to another image, the cluster reaches its own image.
+    void join(const Pair& pair);
+
+    /// Axes along which some cluster reaches its own periodic image.
+    const std::array<bool, 3>& percolating() const { return percolating_; }
+
+   private:
+    std::vector<std::int32_t> parent_;
+    std::vector<Offset> offset_;  // image of each row as seen from its parent
+    std::array<bool, 3> percolating_{false, false, false};
 };
 
 /// Axes along which a group of touching particles reaches its own periodic image. Along another axis nothing in the packing resists

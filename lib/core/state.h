@@ -1,6 +1,7 @@
 // state.h: one state of a particle assembly as a struct of arrays; docs/dem-state.5 describes its stream form.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,6 +66,9 @@ struct State {
     Json history = Json::array();
     Json other = Json::object();  // unknown keys of the document, carried through
 };
+
+/// Volume of a sphere, m3, of its radius, m.
+inline double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
 
 /// Sum of the particles' volumes, m3 (overlaps counted twice, as mass is).
 double particle_volume(const Particles& particles);

@@ -2,12 +2,14 @@
 #include "io/files.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "io/state_io.h"
 
@@ -30,6 +32,11 @@ void throw_system_error(const std::string& sentence) {
     if (errno == EPIPE) throw ClosedPipe();
     if (errno == EINTR) throw Interrupted();
     throw Error(sentence + ": " + std::strerror(errno));
+}
+
+void finish_partial(const std::string& name) {
+    const std::string final = resolved(name), partial = final + ".partial";
+    if (std::rename(partial.c_str(), final.c_str()) != 0 && errno != ENOENT) throw_system_error(name + ": cannot be renamed into place");
 }
 
 Input::Input(std::vector<std::string> files) : files_(std::move(files)) {
@@ -66,7 +73,8 @@ std::optional<State> Input::next_state() {
     return state_from(std::move(*document));
 }
 
-Output::Output(std::string name, bool text) : name_(std::move(name)), text_(text) {
+Output::Output(std::string name, bool text, std::optional<Resumption> resumption)
+    : name_(std::move(name)), text_(text) {
     if (name_.empty()) throw Error("the output has an empty name");
     if (name_ == "-") {
         if (!text_ && isatty(STDOUT_FILENO))
@@ -78,6 +86,7 @@ Output::Output(std::string name, bool text) : name_(std::move(name)), text_(text
     struct stat status {};
     const bool exists = stat(name_.c_str(), &status) == 0;
     if (!exists && errno != ENOENT) fail();
+    if (exists && !S_ISREG(status.st_mode) && resumption) throw Error(name_ + ": is no regular file, so no run can be taken up in it");
     if (exists && !S_ISREG(status.st_mode)) {  // a device or a pipe has no whole to wait for
         file_ = std::fopen(name_.c_str(), "wbe");
         if (!file_) fail();
@@ -85,7 +94,10 @@ Output::Output(std::string name, bool text) : name_(std::move(name)), text_(text
     }
     if (exists && access(name_.c_str(), W_OK) != 0) fail();
     final_ = resolved(name_);
-    create_partial();
+    if (resumption)
+        open_partial(*resumption);
+    else
+        create_partial();
     if (exists) fchmod(fileno(file_), status.st_mode & 0777);
 }
 
@@ -101,11 +113,37 @@ void Output::create_partial() {
     }
 }
 
+void Output::open_partial(const Resumption& resumption) {
+    partial_ = final_ + ".partial";
+    file_ = std::fopen(partial_.c_str(), resumption.take_up ? "r+be" : "wbxe");
+    if (!file_ && resumption.take_up && errno == ENOENT && resumption.bytes == 0) file_ = std::fopen(partial_.c_str(), "wbxe");
+    const std::string partial = file_ ? partial_ : std::exchange(partial_, std::string());
+    if (!file_ && errno == EEXIST)
+        throw Error(partial + ": is there already; a run is writing it, or --resume takes up the one that did");
+    if (!file_ && errno == ENOENT && resumption.take_up) throw Error(partial + ": is gone, so the run cannot be taken up");
+    if (!file_) fail();
+    struct stat status {};
+    if (fstat(fileno(file_), &status) != 0 || static_cast<std::uint64_t>(status.st_size) < resumption.bytes)
+        throw Error(partial + ": is shorter than it was at the checkpoint");
+    if (flock(fileno(file_), LOCK_EX | LOCK_NB) != 0) throw Error(partial + ": is being written by another run");
+    keep_ = resumption.bytes > 0;
+    const auto kept = static_cast<off_t>(resumption.bytes);
+    if (ftruncate(fileno(file_), kept) != 0 || fseeko(file_, kept, SEEK_SET) != 0) fail();
+}
+
+std::uint64_t Output::flushed_bytes() {
+    if (std::fflush(file_) != 0) fail();
+    keep_ = true;
+    const off_t bytes = ftello(file_);
+    if (bytes < 0) fail();
+    return static_cast<std::uint64_t>(bytes);
+}
+
 void Output::fail() const { throw_system_error(name_ + ": cannot be written"); }
 
 Output::~Output() {
     if (file_ && file_ != stdout) std::fclose(file_);
-    if (!partial_.empty()) unlink(partial_.c_str());
+    if (!partial_.empty() && !keep_) unlink(partial_.c_str());
 }
 
 void Output::write(const Document& document) {

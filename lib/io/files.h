@@ -42,13 +42,22 @@ class Input {
     std::unique_ptr<DocumentReader> reader_;
 };
 
+/// For a run that may be broken off and taken up again: the file being written is NAME.partial and stays where the run breaks off.
+struct Resumption {
+    bool take_up = false;     // an earlier run's partial file, if it is there
+    std::uint64_t bytes = 0;  // that are kept of it
+};
+
+/// Gives the partial file of a run that had only this left to do its final name; does nothing if that is done already.
+void finish_partial(const std::string& name);
+
 /// An output file or stdout ("-"). A file is written beside its final name and renamed by commit(); without commit() nothing
 /// appears and a file of that name stays as it was. Symbolic links and permissions are kept. Devices and named pipes are written
 /// as they are.
 class Output {
    public:
     /// Throws Error if the file cannot be created, or if binary documents would go to a terminal.
-    Output(std::string name, bool text);
+    Output(std::string name, bool text, std::optional<Resumption> resumption = std::nullopt);
     ~Output();
     Output(const Output&) = delete;
     Output& operator=(const Output&) = delete;
@@ -59,17 +68,23 @@ class Output {
     void write(const Json& line);
     void write_text(const std::string& text);
 
+    /// Hands everything to the system and gives the number of bytes in the file so far. From then on the partial file of a run that may
+    /// be taken up stays where it breaks off.
+    std::uint64_t flushed_bytes();
+
     /// Flushes, checks, and gives the file its final name. Throws Error on a full disk, ClosedPipe on a closed pipe.
     void commit();
 
    private:
     [[noreturn]] void fail() const;
     void create_partial();
+    void open_partial(const Resumption& resumption);
 
     std::string name_;     // as it was given
     std::string final_;    // the regular file that it leads to; empty for a device, a pipe or standard output
     std::string partial_;  // the file being written, until it has its final name
     bool text_;
+    bool keep_ = false;    // the partial file, where the run breaks off
     std::FILE* file_ = nullptr;
 };
 

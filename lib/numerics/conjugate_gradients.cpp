@@ -1,6 +1,7 @@
 // conjugate_gradients.cpp: the iteration; three passes over the particles each, all in fixed chunks.
 #include "numerics/conjugate_gradients.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kiln::numerics {
@@ -40,8 +41,7 @@ ConjugateGradients::ConjugateGradients(std::size_t particles)
     : r_(particles), z_(particles), p_(particles), q_(particles), total_(3 * particles) {}
 
 LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preconditioner& preconditioner,
-                                      const Eigen::Matrix3d& allowed, const Motion& b, Motion& x, double tolerance,
-                                      int most_iterations) {
+                                      const Eigen::Matrix3d& allowed, const Motion& b, Motion& x, const LinearGoal& goal) {
     std::fill(x.displacement.begin(), x.displacement.end(), 0.0);
     x.strain.setZero();
     std::fill(p_.displacement.begin(), p_.displacement.end(), 0.0);
@@ -90,10 +90,10 @@ LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preco
     };
 
     const double start = advance(0.0);
-    const double wanted = tolerance * tolerance * start;
+    const double wanted = std::max(goal.tolerance * goal.tolerance * start, goal.enough);
     double product = start, ratio = 0.0;
-    LinearSolve report;
-    while (product > wanted && report.iterations < most_iterations) {
+    LinearSolve report{.start = start};
+    while (product > wanted && report.iterations < goal.most_iterations) {
         const double curvature = stiffness_along(ratio);
         if (!(curvature > 0.0)) break;  // only motion that costs nothing is left
         const double next = advance(product / curvature);

@@ -9,9 +9,17 @@ namespace kiln::numerics {
 struct LinearSolve {
     int iterations = 0;
     double residual = 0.0;  // norm of the preconditioned residual over that of the right-hand side
+    double start = 0.0;     // square of that norm of the right-hand side
 };
 
-/// Solves K x = b from x = 0 until the residual's norm in the preconditioner falls below `tolerance` times that of b.
+/// When a linear solve ends.
+struct LinearGoal {
+    double tolerance = 1e-8;    // norm of the preconditioned residual over that of the right-hand side
+    double enough = 0.0;        // square of that norm itself, an estimate of the square of the error in the energy norm
+    int most_iterations = 5000;
+};
+
+/// Solves K x = b from x = 0 until one of the goals is met.
 ///
 /// A singular K (particles without contacts, clusters that hang on nothing) is allowed as long as b does no work on its null space.
 /// allowed: projector onto the strains that the box may take. Work vectors are kept between calls.
@@ -20,7 +28,7 @@ class ConjugateGradients {
     explicit ConjugateGradients(std::size_t particles);
 
     LinearSolve solve(const ContactNetwork& network, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
-                      const Motion& b, Motion& x, double tolerance, int most_iterations);
+                      const Motion& b, Motion& x, const LinearGoal& goal);
 
    private:
     Motion r_, z_, p_, q_;

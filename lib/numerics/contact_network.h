@@ -80,8 +80,9 @@ class ContactNetwork {
 
     std::vector<std::int32_t> first, second;    // particles i and j of each entry
     std::vector<std::int32_t> pair;             // row of the entry in the list of pairs
-    std::vector<double> nx, ny, nz;             // unit vector from i to j
-    std::vector<double> normal, tangential;     // stiffness of the entry, N/m
+    // Single precision halves the memory traffic; Newton's iteration corrects what it leaves out.
+    std::vector<float> nx, ny, nz;           // unit vector from i to j
+    std::vector<float> normal, tangential;   // stiffness of the entry, in any one unit
 
    private:
     static constexpr std::int64_t fewest_parallel = 5;  // chunks; below, threads wait for each other longer than they work

@@ -89,11 +89,11 @@ void Preconditioner::eliminate(const ContactNetwork::Chunk& chunk) {
     }
 }
 
-void Preconditioner::factorise_strain(const ContactNetwork& network, std::span<const Vec3> vectors) {
+void Preconditioner::factorise_strain(const ContactNetwork& network, std::span<const Vec3> levers) {
     std::vector<Eigen::Matrix3d> parts(network.chunks().size(), Eigen::Matrix3d::Zero());
     network.for_chunks([&](std::size_t index) {
         network.for_owned(index, [&](std::size_t entry) {
-            const Vec3& l = vectors[static_cast<std::size_t>(network.pair[entry])];
+            const Vec3& l = levers[static_cast<std::size_t>(network.pair[entry])];
             parts[index] += l.asDiagonal() * stiffness_of(network, entry) * l.asDiagonal();
         });
     });
@@ -102,13 +102,12 @@ void Preconditioner::factorise_strain(const ContactNetwork& network, std::span<c
     strain_inverse_ = pivot_inverse(strain, strain.trace());
 }
 
-void Preconditioner::factorise(const ContactNetwork& network, std::span<const Vec3> vectors) {
-    // Stiffness is of the order of surface energy over strain, J/m2, at any particle size: well inside the range of single precision.
+void Preconditioner::factorise(const ContactNetwork& network, std::span<const Vec3> levers) {
     network.for_chunks([&](std::size_t index) {
         assemble(network, index);
         eliminate(network.chunks()[index]);
     });
-    factorise_strain(network, vectors);
+    factorise_strain(network, levers);
 }
 
 void Preconditioner::apply(const ContactNetwork& network, std::size_t index, const Motion& r, Motion& z) const {

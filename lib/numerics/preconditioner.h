@@ -14,8 +14,8 @@ class Preconditioner {
    public:
     explicit Preconditioner(const ContactNetwork& network);
 
-    /// Takes the network's present stiffness. vectors: l of each pair, m.
-    void factorise(const ContactNetwork& network, std::span<const Vec3> vectors);
+    /// Takes the network's present stiffness. levers: from node to node of each pair, m.
+    void factorise(const ContactNetwork& network, std::span<const Vec3> levers);
 
     /// z = M^-1 r for the particles of one chunk.
     void apply(const ContactNetwork& network, std::size_t chunk, const Motion& r, Motion& z) const;
@@ -26,7 +26,7 @@ class Preconditioner {
    private:
     void assemble(const ContactNetwork& network, std::size_t chunk);
     void eliminate(const ContactNetwork::Chunk& chunk);
-    void factorise_strain(const ContactNetwork& network, std::span<const Vec3> vectors);
+    void factorise_strain(const ContactNetwork& network, std::span<const Vec3> levers);
 
     std::vector<std::size_t> row_begin_;     // blocks of a particle's row, left of the diagonal
     std::vector<std::int32_t> column_;       // ascending in a row

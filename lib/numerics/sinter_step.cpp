@@ -19,6 +19,10 @@ constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, lo
 constexpr double tightest_linear = 1e-3;
 constexpr double predictor_tolerance = 10.0;  // of the first-order solution, over that of the step
 constexpr double corrector_linear = 0.05;  // tolerance of the first linear solve that starts from the first-order solution
+constexpr double tolerance_share = 0.3;    // of the tolerance, that is left to linear solves
+constexpr double limit_stiffness = 10.0;   // of the springs at closing limits, over the mean tangent of the contacts
+constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a closing limit is met
+constexpr int most_limit_passes = 60;
 
 /// Share of the step in which a pair touches, by linear change of the overlap.
 double touching_share(double start, double end) {
@@ -27,10 +31,16 @@ double touching_share(double start, double end) {
     return std::max(start, end) / std::abs(end - start);
 }
 
-/// Overlap at the end of the step of a pair that nothing else holds, under its share of the sintering force, m.
+/// Overlap at the end of the step of a pair that nothing else holds, under its share of the driving force, m.
 double alone(const PairStep& pair, double share) {
+    if (!(pair.cubic > 0.0)) return 0.0;
     const double start = std::max(0.0, pair.overlap);
     return std::cbrt(start * start * start + 3.0 * share * pair.force / pair.cubic);
+}
+
+/// Resistance to closing from one overlap to another, both not negative: (K/I) times the integral of h^2.
+double resistance(const PairStep& pair, double start, double reached) {
+    return pair.cubic / 3.0 * (reached * reached * reached - start * start * start);
 }
 
 }  // namespace
@@ -43,82 +53,107 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       solver_(position.size()),
       preconditioner_(network_),
       normals_(pairs.size()),
-      vectors_(pairs.size()),
+      levers_(pairs.size()),
       share_(pairs.size()),
       tangential_(pairs.size()),
+      goal_(pairs.size()),
       total_(3 * position.size()),
       unbalanced_(position.size()),
       direction_(position.size()) {}
 
-Vec3 SinterStep::relative(std::size_t row, const Motion& motion, const Vec3& vector) const {
+Vec3 SinterStep::relative(std::size_t row, const Motion& motion, const Vec3& lever) const {
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].i)]);
     const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].j)]);
-    return b - a + motion.strain.cwiseProduct(vector);
+    return b - a + motion.strain.cwiseProduct(lever);
 }
 
 void SinterStep::start_geometry(const std::vector<PairStep>& step) {
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < step.size(); ++row) {
         const PairStep& pair = step[row];
-        vectors_[row] = pair.vector;
+        levers_[row] = pair.lever;
         normals_[row] = pair.vector / pair.distance;
         share_[row] = pair.overlap >= 0.0 ? 1.0 : 0.0;
+        goal_[row] = alone(pair, share_[row]);
         // Mean overlap of the step as the pair alone would have it: at its start a new contact has no neck to resist shear.
-        const double mean_overlap = share_[row] * 0.5 * (pair.overlap + alone(pair, share_[row]));
-        tangential_[row] = physics::tangential_viscosity(settings_.constants, mean_overlap, pair.reduced_radius) / pair.diffusion;
+        tangential_[row] = pair.shear * share_[row] * 0.5 * (std::max(pair.overlap, 0.0) + goal_[row]);
     }
+    pressure_volume_ = settings_.pressure * box_.volume();
+    take_geometry(step);
 }
 
 void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion) {
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < step.size(); ++row) {
         const PairStep& pair = step[row];
-        const Vec3 end = pair.vector + relative(row, motion, pair.vector);
+        const Vec3 end = pair.vector + relative(row, motion, pair.lever);
         const double end_overlap = pair.overlap + pair.distance - end.norm();
         normals_[row] = (pair.vector + end).normalized();
         share_[row] = touching_share(pair.overlap, end_overlap);
-        const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0)) * share_[row];
-        tangential_[row] = physics::tangential_viscosity(settings_.constants, mean_overlap, pair.reduced_radius) / pair.diffusion;
+        goal_[row] = alone(pair, share_[row]);
+        tangential_[row] = pair.shear * share_[row] * 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
+    }
+    const Vec3 stretch = Vec3::Ones() + 0.5 * motion.strain;  // the pressure acts on the faces of the box as they are half way
+    pressure_volume_ = settings_.pressure * box_.volume() * stretch.prod();
+    pressure_volume_ = pressure_volume_.cwiseQuotient(stretch);
+    take_geometry(step);
+}
+
+/// Brings what does not change between Newton's iterations into the order of the network.
+void SinterStep::take_geometry(const std::vector<PairStep>& step) {
+    network_.for_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+        for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
+            const auto row = static_cast<std::size_t>(network_.pair[entry]);
+            network_.nx[entry] = static_cast<float>(normals_[row][0]);
+            network_.ny[entry] = static_cast<float>(normals_[row][1]);
+            network_.nz[entry] = static_cast<float>(normals_[row][2]);
+            network_.tangential[entry] = static_cast<float>(tangential_[row]);
+        }
+    });
+    start_limits(step);
+}
+
+void SinterStep::start_limits(const std::vector<PairStep>& step) {
+    double stiffness = 0.0;
+    for (std::size_t row = 0; row < step.size(); ++row) stiffness += share_[row] * step[row].cubic * goal_[row] * goal_[row];
+    limits_.reset(step.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step.size(), 1)));
+    for (std::size_t row = 0; row < step.size(); ++row) {
+        const PairStep& pair = step[row];
+        if (std::isinf(pair.limit)) continue;
+        const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
+        limits_.add(row, pair.limit, std::max(0.0, share_[row] * pair.force - resistance(pair, start, reached)));  // as if alone
     }
 }
 
 void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant) {
     ContactNetwork& network = network_;
-    network.for_chunks([&](std::size_t index) {
-        const ContactNetwork::Chunk& chunk = network.chunks()[index];
-        for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
-            const auto row = static_cast<std::size_t>(network.pair[entry]);
-            network.nx[entry] = normals_[row][0];
-            network.ny[entry] = normals_[row][1];
-            network.nz[entry] = normals_[row][2];
-            network.tangential[entry] = tangential_[row];
-        }
-    });
     network.gather(motion, unbalanced, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
         const auto row = static_cast<std::size_t>(network.pair[entry]);
         const PairStep& pair = step[row];
         const Vec3& n = normals_[row];
         const double along = n.dot(du);  // opening
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap - along);
-        const double force = share_[row] * pair.force;
-        const double resistance = pair.cubic / 3.0 * (reached * reached * reached - start * start * start);
         // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least a
         // part of the tangent there.
-        const double goal = alone(pair, share_[row]);
+        const double goal = goal_[row];
         const double least = secant ? (goal * goal + goal * reached + reached * reached) / 3.0 : least_tangent * goal * goal;
-        network.normal[entry] = pair.cubic * std::max(reached * reached, reached < goal ? least : 0.0);
-        return (force - resistance) * n + tangential_[row] * (du - along * n);
+        const double limit = limits_.any() ? limits_.reaction(row, -along) : 0.0;
+        const double tangent = pair.cubic * std::max(reached * reached, reached < goal ? least : 0.0);
+        network.normal[entry] = static_cast<float>(tangent + (limit > 0.0 ? limits_.stiffness() : 0.0));
+        return (share_[row] * pair.force - resistance(pair, start, reached) - limit) * n + tangential_[row] * (du - along * n);
     });
-    for (int axis = 0; axis < 3; ++axis) unbalanced.strain[axis] += settings_.pressure[axis] * box_.volume();
+    strain_force_ = unbalanced.strain;
+    unbalanced.strain += pressure_volume_;
     project(unbalanced, settings_.allowed_strain);
     work_ = network.sum_chunks([&](std::size_t index) {
         double sum = 0.0;
         network.for_owned(index, [&](std::size_t entry) {
             const auto row = static_cast<std::size_t>(network.pair[entry]);
-            sum -= share_[row] * step[row].force * normals_[row].dot(relative(row, motion, vectors_[row]));
+            sum -= share_[row] * step[row].force * normals_[row].dot(relative(row, motion, levers_[row]));
         });
         return sum;
-    }) - settings_.pressure.dot(motion.strain) * box_.volume();
+    }) - pressure_volume_.dot(motion.strain);
 }
 
 double SinterStep::line_search(const std::vector<PairStep>& step, double slope, Motion& motion) {
@@ -148,11 +183,12 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, dou
                         StepReport& report) {
     forces(step, motion, unbalanced_, true);
     for (int iteration = 0; iteration < most_newton; ++iteration) {
-        preconditioner_.factorise(network_, vectors_);
+        preconditioner_.factorise(network_, levers_);
         unbalanced_.strain *= -1.0;
         for (double& component : unbalanced_.displacement) component = -component;
-        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, linear_tolerance,
-                                                 most_conjugate_gradients);
+        const double enough = tolerance_share * tolerance * tolerance_share * tolerance * work_;
+        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_,
+                                                 {linear_tolerance, enough, most_conjugate_gradients});
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
         const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction
@@ -163,16 +199,30 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, dou
         const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
         const double now = length < 1.0 ? error : (linear.residual + error) * error;
         if (now < tolerance) return true;
-        linear_tolerance = std::clamp(std::max(now, 0.5 * tolerance / now), tightest_linear, loosest_linear);
+        linear_tolerance = std::clamp(now, tightest_linear, loosest_linear);
     }
     return false;
+}
+
+bool SinterStep::minimise(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion,
+                          StepReport& report) {
+    bool converged = newton(step, tolerance, linear_tolerance, motion, report);
+    for (int pass = 0; converged && limits_.any(); ++pass) {
+        const double missed = limits_.update(
+            [&](std::size_t row) { return -normals_[row].dot(relative(row, motion, levers_[row])); },
+            [&](std::size_t row) { return limit_accuracy * step[row].reduced_radius; });
+        if (missed <= 1.0) break;
+        if (pass == most_limit_passes) return false;
+        converged = newton(step, tolerance, linear_tolerance, motion, report);
+    }
+    return converged;
 }
 
 void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion) const {
     const std::size_t count = network_.particles();
     Clusters clusters(count);
     for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        if (share_[row] > 0.0 || step[row].overlap > 0.0) clusters.join(pairs_[row].i, pairs_[row].j);
+        if (share_[row] > 0.0 || step[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
     }
     std::vector<Vec3> drift(count, Vec3::Zero());
     std::vector<double> members(count, 0.0);
@@ -189,15 +239,17 @@ void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion)
 
 StepReport SinterStep::solve(const std::vector<PairStep>& step, Motion& motion, Motion& first_order) {
     StepReport report;
-    motion = Motion(network_.particles());
     start_geometry(step);
-    report.converged = newton(step, predictor_tolerance * settings_.solver_tolerance, loosest_linear, motion, report);
+    report.converged = minimise(step, predictor_tolerance * settings_.solver_tolerance, loosest_linear, motion, report);
     remove_drift(step, motion);
     first_order = motion;
-    if (!settings_.second_order) return report;
-    midpoint_geometry(step, motion);
-    report.converged = newton(step, settings_.solver_tolerance, corrector_linear, motion, report) && report.converged;
-    remove_drift(step, motion);
+    if (settings_.second_order) {
+        midpoint_geometry(step, motion);
+        report.converged = minimise(step, settings_.solver_tolerance, corrector_linear, motion, report) && report.converged;
+        remove_drift(step, motion);
+    }
+    const Vec3 stretch = settings_.second_order ? Vec3(Vec3::Ones() + 0.5 * first_order.strain) : Vec3::Ones();
+    report.stress = strain_force_.cwiseProduct(stretch) / (box_.volume() * stretch.prod());
     return report;
 }
 

@@ -11,27 +11,29 @@
 #include <span>
 #include <vector>
 
+#include "numerics/closing_limits.h"
 #include "numerics/conjugate_gradients.h"
 #include "numerics/contact_network.h"
-#include "physics/sinter_contact.h"
 
 namespace kiln::numerics {
 
-/// What one pair brings into a step. Geometry is that at the start of the step.
+/// What one pair brings into a step. Geometry is that at the start of the step. A pair that does not diffuse has neither force nor
+/// viscosity; it can only reach its limit. Forces may be in any unit, the same for all: only their ratios move anything.
 struct PairStep {
     Vec3 vector;             // l, from i to j, m
+    Vec3 lever;              // from node to node of the network, m; l for particles that move by themselves
     double distance;         // |l|, m
     double overlap;          // h, m; negative for a gap
     double reduced_radius;   // R*, m
-    double force;            // f, N
-    double cubic;            // K/I, N/m3
-    double diffusion;        // I, m5/N
+    double force;            // f
+    double cubic;            // K/I, force/m3
+    double shear;            // tangential viscosity over h and I, force/m2
+    double limit;            // largest closing, m; infinity for none
 };
 
 struct StepSettings {
-    physics::ContactConstants constants;
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
-    Vec3 pressure = Vec3::Zero();                     // Pa, compressive, along the free axes
+    Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double solver_tolerance = 1e-3;                   // relative error of a step's motion in the energy norm
     bool second_order = true;
 };
@@ -40,6 +42,7 @@ struct StepReport {
     int newton = 0;
     int conjugate_gradients = 0;
     bool converged = true;
+    Vec3 stress = Vec3::Zero();  // mean over the step along the axes, tension positive, force/m2
 };
 
 /// Solves steps on one list of pairs. Positions and box must stay those of the constructor.
@@ -47,14 +50,18 @@ class SinterStep {
    public:
     SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings);
 
-    /// Motion over the step of the given pair data (a row a pair); `first_order` receives that of the first-order solution, on the way.
+    /// Motion over the step of the given pair data (a row a pair), from a guess of it; `first_order` receives that of the first-order
+    /// solution, on the way.
     StepReport solve(const std::vector<PairStep>& step, Motion& motion, Motion& first_order);
 
    private:
     /// Relative motion of pair `row` under a motion, m.
-    Vec3 relative(std::size_t row, const Motion& motion, const Vec3& vector) const;
+    Vec3 relative(std::size_t row, const Motion& motion, const Vec3& lever) const;
     void start_geometry(const std::vector<PairStep>& step);
     void midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion);
+    void take_geometry(const std::vector<PairStep>& step);
+    void start_limits(const std::vector<PairStep>& step);
+    bool minimise(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion, StepReport& report);
     bool newton(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion, StepReport& report);
     double line_search(const std::vector<PairStep>& step, double slope, Motion& motion);
     void forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant);
@@ -66,11 +73,14 @@ class SinterStep {
     ContactNetwork network_;
     ConjugateGradients solver_;
     Preconditioner preconditioner_;
-    std::vector<Vec3> normals_, vectors_;  // a row a pair
-    std::vector<double> share_, tangential_;
+    ClosingLimits limits_;
+    std::vector<Vec3> normals_, levers_;  // a row a pair
+    std::vector<double> share_, tangential_, goal_;
     std::vector<double> total_;
     Motion unbalanced_, direction_;
-    double work_ = 0.0;  // of the driving forces in the last call of forces(), J
+    Vec3 pressure_volume_ = Vec3::Zero();  // work of the pressure for a unit strain along each axis
+    Vec3 strain_force_ = Vec3::Zero();     // work of the contacts for the same, in the last call of forces()
+    double work_ = 0.0;                    // of the driving forces in the last call of forces()
 };
 
 }  // namespace kiln::numerics

@@ -1,85 +1,80 @@
-// sintering.h: a packing on its way through sintering: pairs, steps, step control, and landing exactly on wanted times and densities.
+// sintering.h: what a method of sintering is asked for and what it tells of each step; implicit_sintering.h and explicit_sintering.h are
+// the methods.
 #pragma once
 
-#include <limits>
-#include <memory>
-#include <string>
+#include <array>
 
 #include "core/contacts.h"
-#include "core/state.h"
-#include "numerics/sinter_step.h"
+#include "numerics/kinetics.h"
+#include "numerics/packing.h"
+#include "physics/sinter_contact.h"
 
 namespace kiln::numerics {
 
 struct SinteringSettings {
-    StepSettings step;
-    double temperature = 0.0;       // K
-    double tolerance = 1e-3;        // relative error of the density over the whole run that the steps aim at
-    double density_accuracy = 1e-7; // relative, of a wanted density
+    physics::Schedule schedule = physics::Schedule::hold(1473.15);
+    physics::ContactConstants constants;
+    Faces faces = Faces::as_given;
+    std::array<bool, 3> fixed{false, false, false};  // axes along which the box keeps its length
+    Vec3 pressure = Vec3::Zero();                   // Pa, compressive, along the periodic axes
+    double tolerance = 1e-3;         // relative error of the density over the whole run that the steps aim at
+    double solver_tolerance = 1e-3;  // relative error of a step's motion in the energy norm
+    bool second_order = true;        // of the implicit step
+    double mass_scaling = 1e20;      // of the explicit method: inertial over real mass
 };
 
 /// What one step did; also the keys of the density history.
 struct StepRecord {
-    double time, duration;        // at the end of the step, s; length of the step, s
-    double relative_density;      // over a periodic box
-    Vec3 strain;                  // logarithmic, since the start
-    ContactStatistics contacts;
-    double error;                 // estimated, of the density since the start, relative
-    int attempts, newton, conjugate_gradients;  // of the step, rejected attempts included
-    bool converged;
+    double time = 0.0, duration = 0.0;  // at the end of the step, s; length of the step, s
+    double temperature = 0.0;           // at the end of the step, K
+    double relative_density = 0.0;
+    Vec3 strain = Vec3::Zero();         // logarithmic, since the start
+    Vec3 stress = Vec3::Zero();         // mean over the step along the axes, tension positive, Pa
+    ContactStatistics contacts{};
+    double error = 0.0;                 // estimated, of the density since the start, relative
+    int attempts = 0, newton = 0, conjugate_gradients = 0;  // of the step, rejected attempts included
+    bool converged = true;
 };
 
-class Sintering {
+/// A packing and the way it is integrated in time.
+class SinteringMethod {
    public:
-    /// Throws Error where the materials lack what the contact law needs, centres coincide, or a particle is not finite.
-    Sintering(State state, const SinteringSettings& settings);
+    virtual ~SinteringMethod() = default;
 
-    /// One step, ended early at latest_time (s) or where the density reaches highest_density.
+    /// One step (the explicit method: a few), ended early at latest_time (s) or where the density reaches highest_density.
     /// Throws Error if nothing densifies any more although a density is wanted.
-    StepRecord advance(double latest_time, double highest_density);
+    virtual StepRecord advance(double latest_time, double highest_density) = 0;
 
-    double time() const { return state_.time; }
-    double relative_density() const { return density_; }
+    /// All that the next steps depend on, as a state: particles in working order with further arrays, and numbers under the key
+    /// "sintering".
+    State checkpoint() const;
+
+    /// Takes up a run from its checkpoint; this must have been made from the same state and settings.
+    /// Throws Error where the checkpoint has another number of particles or lacks something.
+    void restore(const State& checkpoint);
+
+    const Packing& packing() const { return packing_; }
     std::size_t steps() const { return steps_; }
+    double time() const { return packing_.time(); }
+    double relative_density() const { return packing_.density(); }
+    State state() const { return packing_.state(); }
 
-    /// The present state, particles in the order they came in, positions inside the box.
-    State state() const;
+   protected:
+    SinteringMethod(State state, const SinteringSettings& settings)
+        : settings_(settings), packing_(std::move(state), settings.faces), kinetics_(packing_.working(), settings.schedule) {}
 
-   private:
-    /// A trial step and what it led to.
-    struct Trial {
-        Motion motion, first_order;
-        StepReport report;
-        double log_density = 0.0, first_log_density = 0.0;  // change over the step
-        double closing = 0.0;                               // bound of how much any gap closed, m
-    };
-    double diffusion_over(std::int32_t a, std::int32_t b, double duration) const;
-    void find_pairs_with_margin(double closing);
-    Eigen::Matrix3d allowed_strain() const;
-    double closing_bound(const Motion& motion) const;
-    void fill_pair_steps(double duration);
-    Trial attempt(double duration, bool tight);
-    Trial land_on(double log_change, double& duration, const Trial& beyond);
-    double log_density_change(const Motion& motion) const;
-    double first_duration();
-    void apply(const Trial& trial, double duration);
+    /// Numbers and arrays (a row a particle) of the method itself, and the way back.
+    virtual Json numbers() const = 0;
+    virtual std::vector<NamedArray> arrays() const = 0;
+    virtual void take_up(const Json& numbers, const std::vector<NamedArray>& arrays) = 0;
 
-    State state_;
-    std::vector<std::int32_t> order_;  // row in the input of each present row
     SinteringSettings settings_;
-    std::vector<double> diffusion_;    // Delta of each pair of materials, m5/(N s)
-    std::vector<double> energy_;       // gamma of each pair of materials, J/m2
-    std::vector<Pair> pairs_, active_, touching_;  // all within the margin; those that may touch in the step; those that do
-    std::vector<PairStep> pair_steps_, active_steps_;
-    double margin_left_ = -1.0;        // closing that the list of pairs still covers, m
-    std::array<bool, 3> free_axis_{true, true, true};  // may the box strain along this axis
-    double largest_radius_ = 0.0, mean_radius_ = 0.0;  // m; the mean is that of volume
-    double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m
-    double last_duration_ = 0.0, next_duration_ = 0.0;
-    double density_ = 0.0, error_ = 0.0;
-    Vec3 strain_ = Vec3::Zero();
-    std::size_t steps_ = 0, idle_steps_ = 0;
-    int attempts_ = 0, newton_ = 0, conjugate_gradients_ = 0;  // since the last accepted step
+    Packing packing_;
+    Kinetics kinetics_;
+    std::size_t steps_ = 0;
 };
+
+/// The f8 array of three columns and the given number of rows; throws Error where there is none.
+std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::string& name, std::size_t rows);
 
 }  // namespace kiln::numerics

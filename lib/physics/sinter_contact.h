@@ -22,6 +22,9 @@ inline double reduced_radius(double first, double second) { return first * secon
 /// Square of the contact radius, a^2 = 4 R* h (Coble; 2 R h for equal spheres), m2. Zero without overlap.
 inline double contact_radius_squared(double overlap, double reduced) { return overlap > 0.0 ? 4.0 * reduced * overlap : 0.0; }
 
+/// Overlap at which the contact radius is `neck` (m): the inverse of the law above, m.
+inline double overlap_of_neck(double neck, double reduced) { return neck * neck / (4.0 * reduced); }
+
 /// Attraction by surface energy, (alpha/beta) pi 2 R* gamma, N (second term of Eq. 1).
 inline double sintering_force(const ContactConstants& c, double reduced, double surface_energy) {
     return c.alpha / c.beta * std::numbers::pi * 2.0 * reduced * surface_energy;

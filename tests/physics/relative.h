@@ -3,8 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 namespace kiln::test {
 
 inline doctest::Approx relative(double value, double epsilon) { return doctest::Approx(value).scale(0.0).epsilon(epsilon); }
+
+/// Relative deviation of a value from what is expected.
+inline double deviation(double value, double expected) { return std::abs(value - expected) / std::abs(expected); }
 
 }  // namespace kiln::test

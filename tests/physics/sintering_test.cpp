@@ -4,82 +4,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
-#include "core/neighbours.h"
-#include "numerics/sintering.h"
-#include "physics/diffusion.h"
-#include "physics/materials.h"
-#include "tools/sinter/green_packing.h"
+#include "tests/physics/sintering_cases.h"
 
 using namespace kiln;
-
-namespace {
-
-constexpr double temperature = 1473.15;  // K
-constexpr double endless = std::numeric_limits<double>::infinity();
-
-/// Relative deviation; doctest::Approx adds 1 to the scale, which hides everything at 1e-8 m.
-double deviation(double value, double expected) { return std::abs(value - expected) / std::abs(expected); }
-
-double diffusion() { return physics::diffusion_parameter_of(physics::builtin_material("alumina"), temperature); }
-double surface_energy() { return *physics::builtin_material("alumina").surface_energy; }
-
-State state_of(const std::vector<Vec3>& positions, const std::vector<double>& radii, const Vec3& box, bool periodic) {
-    State state;
-    state.materials = {physics::builtin_material("alumina")};
-    state.box.lengths = box;
-    state.box.periodic = {periodic, periodic, periodic};
-    state.particles.position = positions;
-    state.particles.radius = radii;
-    state.particles.material.assign(radii.size(), 0);
-    for (std::size_t row = 0; row < radii.size(); ++row) state.particles.id.push_back(static_cast<std::int64_t>(row) + 1);
-    return state;
-}
-
-numerics::SinteringSettings settings(double tolerance = 1e-3) {
-    numerics::SinteringSettings wanted;
-    wanted.temperature = temperature;
-    wanted.tolerance = tolerance;
-    wanted.step.solver_tolerance = 1e-7;
-    return wanted;
-}
-
-/// Sinters until the time and gives the state there.
-State sintered(State state, double time, const numerics::SinteringSettings& wanted = settings()) {
-    numerics::Sintering sintering(std::move(state), wanted);
-    while (sintering.time() < time) {
-        const numerics::StepRecord record = sintering.advance(time, endless);
-        REQUIRE(record.converged);
-        REQUIRE(std::isfinite(record.relative_density));
-    }
-    return sintering.state();
-}
-
-double distance(const State& state, std::size_t a, std::size_t b) {
-    return (state.particles.position[b] - state.particles.position[a]).norm();
-}
-
-/// Overlap of a pair by the pair law of Eq. 1: h^3 = h0^3 + 3.375 Delta gamma t/R*.
-double pair_law(double overlap, double reduced, double time) {
-    return std::cbrt(overlap * overlap * overlap + 3.375 * diffusion() * surface_energy() * time / reduced);
-}
-
-State random_packing(std::int64_t count, double density, double scale) {
-    sinter::PackingOptions wanted;
-    wanted.particles = count;
-    wanted.density = density;
-    wanted.seed = 5;
-    State state = sinter::pack(wanted, [](const sinter::Relaxation&) { return true; });
-    state.materials = {physics::builtin_material("alumina")};
-    state.box.lengths *= scale;
-    for (Vec3& position : state.particles.position) position *= scale;
-    for (double& radius : state.particles.radius) radius *= scale;
-    return state;
-}
-
-}  // namespace
+using namespace sintering_cases;
 
 TEST_CASE("an isolated pair closes by the pair law, in steps of any length, from no overlap at all, equal or not") {
     const double time = 40.0;
@@ -126,7 +55,7 @@ TEST_CASE("simple, body-centred and face-centred cubic cells follow s^3 = s0^3 +
         for (const Vec3& site : lattice.sites) positions.push_back(site * cell);
         State state = state_of(positions, std::vector<double>(positions.size(), radius), Vec3::Constant(cell), true);
         const double loose = relative_density(state) * std::pow(1.0 - start, 3);
-        numerics::Sintering sintering(std::move(state), settings());
+        numerics::ImplicitSintering sintering(std::move(state), settings());
         numerics::StepRecord record{};
         while (sintering.time() < time) record = sintering.advance(time, endless);
         CHECK(deviation(sintering.relative_density(), loose / std::pow(1.0 - reached, 3)) < 1e-5);
@@ -143,8 +72,8 @@ TEST_CASE("lengths times lambda take times times lambda^4") {
 }
 
 TEST_CASE("a wanted density is met to 1e-6 and the same state is reached by way of others") {
-    numerics::Sintering direct(random_packing(150, 0.5, 1.0), settings()), stopped(random_packing(150, 0.5, 1.0), settings());
-    const auto reach = [](numerics::Sintering& sintering, double density) {
+    numerics::ImplicitSintering direct(random_packing(150, 0.5, 1.0), settings()), stopped(random_packing(150, 0.5, 1.0), settings());
+    const auto reach = [](numerics::ImplicitSintering& sintering, double density) {
         while (sintering.relative_density() < density * (1.0 - 1e-6)) REQUIRE(sintering.advance(endless, density).converged);
         CHECK(deviation(sintering.relative_density(), density) < 1e-6);
     };
@@ -163,7 +92,7 @@ TEST_CASE("smaller tolerance, smaller error of the density at a fixed time") {
 
 TEST_CASE("particles without contacts move with the box, and a density that nothing drives to is one sentence") {
     State state = state_of({{1e-7, 1e-7, 1e-7}, {5e-7, 5e-7, 5e-7}}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true);
-    numerics::Sintering sintering(std::move(state), settings());
+    numerics::ImplicitSintering sintering(std::move(state), settings());
     CHECK_THROWS_WITH_AS(
         [&] {
             for (;;) sintering.advance(endless, 0.5);
@@ -174,7 +103,7 @@ TEST_CASE("particles without contacts move with the box, and a density that noth
 TEST_CASE("axes that no contacts reach through follow those that contacts do reach through") {
     const double radius = 50e-9, spacing = 2.0 * radius - 1e-9;
     State rod = state_of({{0.5 * spacing, 3e-7, 3e-7}, {1.5 * spacing, 3e-7, 3e-7}}, {radius, radius}, {2.0 * spacing, 6e-7, 6e-7}, true);
-    numerics::Sintering sintering(std::move(rod), settings());
+    numerics::ImplicitSintering sintering(std::move(rod), settings());
     const double time = 20.0;
     while (sintering.time() < time) sintering.advance(time, endless);
     const Vec3 lengths = sintering.state().box.lengths;
@@ -218,9 +147,9 @@ TEST_CASE("size ratios of 10 and 100 stay finite and converge") {
 
 TEST_CASE("coincident centres and missing data are refused by name") {
     const Vec3 place(1e-7, 1e-7, 1e-7);
-    CHECK_THROWS_WITH_AS(numerics::Sintering(state_of({place, place}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true), settings()),
+    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(state_of({place, place}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true), settings()),
                          doctest::Contains("particles 1 and 2 coincide"), Error);
     State poor = state_of({place}, {50e-9}, Vec3::Constant(1e-6), true);
     poor.materials[0].surface_energy.reset();
-    CHECK_THROWS_WITH_AS(numerics::Sintering(std::move(poor), settings()), "material 'alumina' has no surface_energy", Error);
+    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(std::move(poor), settings()), "material 'alumina' has no surface_energy", Error);
 }

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string_view>
 
+#include "checkpoint.h"
 #include "cli/tool.h"
 #include "green.h"
 #include "run.h"
@@ -11,34 +12,34 @@ namespace {
 using namespace kiln;
 
 int sinter_states(int argc, char** argv) {
-    CLI::App app("Sinter packings of powder particles: overdamped implicit discrete element method.", "sinter");
+    CLI::App app("Sinter packings of powder particles by the discrete element method.", "sinter");
     cli::Common common;
     sinter::Options options;
     common.add_to(app);
     options.add_to(app);
     cli::parse(app, argc, argv, common);
-    options.check();
+    options.check(common.output);
     cli::return_freed_memory();
 
-    io::Input input(common.files);
-    io::Output states(common.output, common.text);
-    std::optional<io::Output> history;
-    if (!options.history.empty()) history.emplace(options.history, true);
-    cli::Progress progress("sinter", common);
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
+    sinter::Checkpoint checkpoint(options, entry(Json::object())["arguments"]);
+    const std::optional<sinter::Progressed> earlier = checkpoint.read();
+    if (earlier && earlier->finished) return sinter::finish(common.output, options.history, *earlier, checkpoint);
+
+    io::Input input(common.files);
+    const auto resumption = [&](std::uint64_t sinter::Progressed::*bytes) -> std::optional<io::Resumption> {
+        if (!checkpoint.wanted()) return std::nullopt;
+        return io::Resumption{options.resume, earlier ? (*earlier).*bytes : 0};
+    };
+    io::Output states(common.output, common.text, resumption(&sinter::Progressed::output_bytes));
+    std::optional<io::Output> history;
+    if (!options.history.empty()) history.emplace(options.history, true, resumption(&sinter::Progressed::history_bytes));
+    cli::Progress progress("sinter", common);
     const auto warn = [&](const std::string& sentence) {
         progress.clear();
         if (!common.quiet) cli::warn("sinter", sentence);
     };
-    bool converged = true;
-    while (auto state = input.next_state()) {
-        converged = sinter::sinter(std::move(*state), options, {states, history ? &*history : nullptr, progress, entry, warn}) && converged;
-        if (cli::stop_requested()) break;
-    }
-    progress.clear();
-    if (history) history->commit();
-    states.commit();
-    return converged ? cli::done : cli::not_converged;
+    return sinter::run(input, options, {states, history ? &*history : nullptr, progress, entry, warn, checkpoint}, earlier);
 }
 
 }  // namespace

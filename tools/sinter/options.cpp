@@ -4,49 +4,121 @@
 #include <algorithm>
 
 #include "cli/units.h"
+#include "tools/sinter/schedule_text.h"
 
 namespace kiln::sinter {
 
-void Options::add_to(CLI::App& app) {
-    using cli::Dimension;
-    cli::add_quantities(app, "--to-density", densities, Dimension::none, "Relative densities to write a state at, such as 0.67,0.71");
-    cli::add_quantities(app, "--at-time", times, Dimension::time, "Times to write a state at");
-    cli::add_quantity(app, "--every", every, Dimension::time, "Also write a state after each such span of time, until the last wanted one");
-    cli::add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of the hold")->required();
-    app.add_option("--history", history, "File for the density history, one JSON line a step")->type_name("FILE");
-    cli::add_quantity(app, "--tolerance", tolerance, Dimension::none, "Relative error of the density over the run to aim at", "1e-3");
-    cli::add_quantity(app, "--alpha", constants.alpha, Dimension::none, "Contact constant of the sintering force", "4.5");
-    cli::add_quantity(app, "--beta", constants.beta, Dimension::none, "Contact constant of the viscosities", "4");
-    cli::add_quantity(app, "--eta", constants.eta, Dimension::none, "Contact constant of tangential friction", "0.01");
-    app.footer(
-        "Reads states, sinters each, and writes a state at every wanted density or time.\n"
-        "`sinter green --help` describes the command that makes green bodies.\n\n"
-        "Examples:\n"
-        "  sinter green -n 6000 --density 0.43 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.kiln\n"
-        "  sinter --temperature 1200C --at-time 10min,1h --history history.jsonl green.kiln | analyze density --table\n"
-        "  sinter --temperature 1473K --to-density 0.79 < green.kiln | bondify | analyze bonds");
+namespace {
+
+using cli::add_quantities, cli::add_quantity, cli::Dimension;
+
+constexpr const char* footer =
+    "Reads states, sinters each, and writes a state at every wanted density or time; with --schedule alone, the state at its end.\n"
+    "`sinter green --help` describes the command that makes green bodies.\n\n"
+    "Examples:\n"
+    "  sinter green -n 6000 --density 0.43 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.kiln\n"
+    "  sinter --schedule \"25C 10K/min 1200C 1h 10K/min 25C\" --history history.jsonl -o fired.kiln green.kiln\n"
+    "  sinter --temperature 1200C --at-time 10min,1h green.kiln | analyze density --table\n"
+    "  sinter --temperature 1200C --fix xy --report viscosity --to-density 0.7 -o film.kiln green.kiln\n"
+    "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 5min -o forged.kiln green.kiln\n"
+    "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln green.kiln";
+
+void check_list(const std::vector<double>& values, double above, double below, const std::string& option) {
+    for (const double value : values)
+        if (!(value > above && value < below))
+            throw CLI::ValidationError(option + ": " + Json(value).dump() + " is not between " + Json(above).dump() + " and " +
+                                       Json(below).dump());
 }
 
-void Options::check() const {
-    if (densities.empty() && times.empty()) throw CLI::ValidationError("one of --to-density and --at-time is wanted");
-    for (const double density : densities)
-        if (!(density > 0.0 && density < 1.0))
-            throw CLI::ValidationError("--to-density: " + Json(density).dump() + " is not between 0 and 1");
+}  // namespace
+
+void Options::add_to(CLI::App& app) {
+    add_programme(app);
+    add_boundaries(app);
+    add_method(app);
+    app.add_option("--history", history, "File for the density history, one JSON line a step")->type_name("FILE");
+    app.add_option("--checkpoint", checkpoint, "File that a broken-off run can be taken up from; wants -o FILE")->type_name("FILE");
+    add_quantity(app, "--checkpoint-every", checkpoint_every, Dimension::time, "Wall time between checkpoints", "60s");
+    app.add_flag("--resume", resume, "Go on from --checkpoint FILE if it is there, else begin with the input");
+    app.footer(footer);
+}
+
+void Options::add_programme(CLI::App& app) {
+    add_quantities(app, "--to-density", densities, Dimension::none, "Relative densities to write a state at, such as 0.67,0.71");
+    add_quantities(app, "--at-time", times, Dimension::time, "Times to write a state at");
+    add_quantity(app, "--every", every, Dimension::time, "Also write a state after each such span of time, until the last wanted one");
+    auto* hold = add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of the hold");
+    app.add_option("--schedule", schedule,
+                   "Temperatures, heating rates and hold times, such as \"25C 10K/min 1200C 1h 10K/min 25C\", from the state's time on")
+        ->type_name("WORDS")
+        ->excludes(hold);
+    app.add_option("--report", report, "viscosity: with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
+        ->check(CLI::IsMember({"viscosity"}))
+        ->type_name("WHAT");
+}
+
+void Options::add_boundaries(CLI::App& app) {
+    app.add_option("--boundary", boundary, "periodic, or free: a body without faces that are periodic")
+        ->check(CLI::IsMember({"periodic", "free"}))
+        ->default_str("as the state says")
+        ->type_name("KIND");
+    app.add_option("--fix", fixed, "Axes along which the box keeps its length, such as xy for a film on a substrate")->type_name("AXES");
+    add_quantities(app, "--pressure", pressure, Dimension::pressure,
+                   "Pressure on the periodic faces, one for all or three for x,y,z; compression counts positive");
+}
+
+void Options::add_method(CLI::App& app) {
+    app.add_option("--method", method,
+                   "implicit: overdamped, second order in time; explicit: with inertia, mass-scaled, as in the paper")
+        ->check(CLI::IsMember({"implicit", "explicit"}))
+        ->capture_default_str()
+        ->type_name("METHOD");
+    add_quantity(app, "--mass-scaling", mass_scaling, Dimension::none, "Mass of the explicit method over the true one", "1e20");
+    add_quantity(app, "--tolerance", tolerance, Dimension::none, "Relative error of the density over the run to aim at", "1e-3");
+    app.add_option("--order", order, "Order in time of the implicit step; 1 is for comparison")->check(CLI::Range(1, 2))->capture_default_str();
+    add_quantity(app, "--alpha", constants.alpha, Dimension::none, "Contact constant of the sintering force", "4.5");
+    add_quantity(app, "--beta", constants.beta, Dimension::none, "Contact constant of the viscosities", "4");
+    add_quantity(app, "--eta", constants.eta, Dimension::none, "Contact constant of tangential friction", "0.01");
+}
+
+void Options::check(const std::string& output) const {
+    if (schedule.empty() && temperature == 0.0) throw CLI::ValidationError("one of --temperature and --schedule is wanted");
+    if (densities.empty() && times.empty() && schedule.empty())
+        throw CLI::ValidationError("one of --to-density, --at-time and --schedule is wanted");
+    check_list(densities, 0.0, 1.0, "--to-density");
     for (const double time : times)
         if (!(time >= 0.0)) throw CLI::ValidationError("--at-time: a time is not negative");
     if (!(every >= 0.0)) throw CLI::ValidationError("--every: a span of time is not negative");
-    if (!(tolerance > 0.0 && tolerance < 1.0)) throw CLI::ValidationError("--tolerance is between 0 and 1");
+    check_list({tolerance}, 0.0, 1.0, "--tolerance");
+    if (!(mass_scaling > 0.0)) throw CLI::ValidationError("--mass-scaling is positive");
     if (!(constants.alpha >= 0.0 && constants.beta > 0.0 && constants.eta >= 0.0))
         throw CLI::ValidationError("--alpha and --eta are not negative and --beta is positive");
+    if (fixed.find_first_not_of("xyz") != std::string::npos)
+        throw CLI::ValidationError("--fix: '" + fixed + "' is not made of the axes x, y and z");
+    if (!(pressure.empty() || pressure.size() == 1 || pressure.size() == 3))
+        throw CLI::ValidationError("--pressure: one value or three are wanted, for x,y,z");
+    if (boundary == "free" && (!fixed.empty() || !pressure.empty()))
+        throw CLI::ValidationError("--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
+    if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint wants an output file: -o FILE");
+    if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume wants --checkpoint FILE");
+    if (!schedule.empty()) parse_schedule(schedule);
 }
 
-numerics::SinteringSettings Options::settings() const {
+numerics::SinteringSettings Options::settings(double start) const {
     numerics::SinteringSettings settings;
-    settings.step.constants = constants;
-    settings.temperature = temperature;
+    settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : parse_schedule(schedule).from(start);
+    settings.constants = constants;
+    settings.faces = boundary == "free" ? numerics::Faces::free : boundary == "periodic" ? numerics::Faces::periodic : numerics::Faces::as_given;
+    for (const char axis : fixed) settings.fixed[static_cast<std::size_t>(axis - 'x')] = true;
+    for (std::size_t axis = 0; axis < 3 && !pressure.empty(); ++axis)
+        settings.pressure[static_cast<Eigen::Index>(axis)] = pressure[pressure.size() == 1 ? 0 : axis];
     settings.tolerance = tolerance;
-    settings.step.solver_tolerance = std::min(tolerance, settings.step.solver_tolerance);
+    settings.solver_tolerance = std::min(tolerance, settings.solver_tolerance);
+    settings.second_order = order == 2;
+    settings.mass_scaling = mass_scaling;
     return settings;
 }
+
+double Options::last_time(double start) const { return settings(start).schedule.end(); }
 
 }  // namespace kiln::sinter

@@ -13,17 +13,37 @@ struct Options {
     std::vector<double> densities;  // relative, wanted states
     std::vector<double> times;      // s, wanted states
     double every = 0.0;             // s, between states; 0: none
-    double temperature = 0.0;       // K
-    std::string history;            // file of one JSON line a step
+    double temperature = 0.0;       // K, of a hold; 0: a schedule is given
+    std::string schedule;
+    std::string boundary = "as the state says";
+    std::string fixed;              // axes
+    std::vector<double> pressure;   // Pa, one or three
+    std::string method = "implicit";
+    double mass_scaling = 1e20;
     double tolerance = 1e-3;
+    int order = 2;
     physics::ContactConstants constants;
+    std::string report;             // what else to say of each state
+    std::string history;            // file of one JSON line a step
+    std::string checkpoint;         // file
+    double checkpoint_every = 60.0;  // s of wall time
+    bool resume = false;
 
     void add_to(CLI::App& app);
 
     /// Checks options against each other; throws CLI::ValidationError.
-    void check() const;
+    void check(const std::string& output) const;
 
-    numerics::SinteringSettings settings() const;
+    /// Settings of the method for a state; wanted times and the schedule count from the state's own time.
+    numerics::SinteringSettings settings(double start) const;
+
+    /// Time at which the run ends if nothing else ends it, s; infinity for a hold.
+    double last_time(double start) const;
+
+   private:
+    void add_programme(CLI::App& app);
+    void add_boundaries(CLI::App& app);
+    void add_method(CLI::App& app);
 };
 
 }  // namespace kiln::sinter

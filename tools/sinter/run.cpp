@@ -1,115 +1,181 @@
-// run.cpp: the loop over steps, with its states, history lines and progress.
+// run.cpp: the loop over states and their steps, with written states, history lines, checkpoints and progress.
 #include "run.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
+#include <utility>
 
 #include "cli/tool.h"
+#include "numerics/explicit_sintering.h"
+#include "numerics/implicit_sintering.h"
+#include "numerics/viscosity.h"
+#include "tools/sinter/wanted.h"
 
 namespace kiln::sinter {
 
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
-constexpr double same_time = 1e-12;          // relative
-constexpr double validity_limit = 0.9;       // relative density above which grain growth, which is not modelled, matters
+constexpr double validity_limit = 0.9;  // relative density above which grain growth, which is not modelled, matters
+constexpr double full_density = 1.0;    // that no body passes
+constexpr double same_density = 1e-6;   // relative
 
-Json summary_of(const numerics::StepRecord& record) {
-    return {{"time", record.time},
-            {"duration", record.duration},
-            {"relative_density", record.relative_density},
-            {"strain", {record.strain[0], record.strain[1], record.strain[2]}},
-            {"coordination_number", record.contacts.coordination_number},
-            {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
-            {"density_error", record.error},
-            {"attempts", record.attempts},
-            {"newton", record.newton},
-            {"conjugate_gradients", record.conjugate_gradients},
-            {"converged", record.converged}};
+Json triple(const Vec3& vector) { return {vector[0], vector[1], vector[2]}; }
+
+Json summary_of(const numerics::StepRecord& record, const std::string& method) {
+    Json summary{{"method", method},
+                 {"time", record.time},
+                 {"duration", record.duration},
+                 {"temperature", record.temperature},
+                 {"relative_density", record.relative_density},
+                 {"strain", triple(record.strain)},
+                 {"stress", triple(record.stress)},
+                 {"coordination_number", record.contacts.coordination_number},
+                 {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
+                 {"attempts", record.attempts}};
+    if (method == "explicit") return summary;
+    summary["density_error"] = record.error;
+    summary["newton"] = record.newton;
+    summary["conjugate_gradients"] = record.conjugate_gradients;
+    summary["converged"] = record.converged;
+    return summary;
 }
 
-/// What is still wanted: ascending densities and times, with the next multiple of --every between.
-struct Wanted {
-    std::vector<double> densities, times;
-    double every, start;
+void add_viscosities(Json& summary, const State& state, const Options& options) {
+    const numerics::ViscousResponse response = numerics::viscous_response(state, options.constants, *state.temperature);
+    summary["sintering_stress"] = response.mean_sintering_stress();
+    summary["bulk_viscosity"] = response.bulk_viscosity();
+    summary["shear_viscosity"] = response.shear_viscosity();
+    summary["viscosity"] = {triple(response.viscosity.row(0)), triple(response.viscosity.row(1)), triple(response.viscosity.row(2))};
+}
 
-    Wanted(const Options& options, double density, double time)
-        : densities(options.densities), times(options.times), every(options.every), start(time) {
-        std::sort(densities.begin(), densities.end());
-        std::sort(times.begin(), times.end());
-        if (!densities.empty() && densities.front() <= density)
-            throw Error("the density " + Json(densities.front()).dump() + " is wanted, the state has " + Json(density).dump() + " already");
-        if (!times.empty() && times.front() < time)
-            throw Error("the time " + Json(times.front()).dump() + " s is wanted, the state is at " + Json(time).dump() + " s already");
+std::unique_ptr<numerics::SinteringMethod> method_of(State state, const Options& options) {
+    const numerics::SinteringSettings settings = options.settings(state.time);
+    if (options.method == "explicit") return std::make_unique<numerics::ExplicitSintering>(std::move(state), settings);
+    return std::make_unique<numerics::ImplicitSintering>(std::move(state), settings);
+}
+
+/// One state on its way.
+class Sintered {
+   public:
+    Sintered(State state, const Options& options, const Sinks& sinks, Progressed progressed)
+        : options_(options),
+          sinks_(sinks),
+          progressed_(std::move(progressed)),
+          wanted_(options, kiln::relative_density(state), state.time),
+          method_(method_of(std::move(state), options)) {}
+
+    void take_up(const State& checkpoint) {
+        method_->restore(checkpoint);
+        wanted_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
     }
 
-    bool done() const { return densities.empty() && times.empty(); }
-    double next_density() const { return densities.empty() ? endless : densities.front(); }
-    double next_time(double now) const {
-        const double listed = times.empty() ? endless : times.front();
-        return every > 0.0 ? std::min(listed, start + every * (std::floor((now - start) / every * (1.0 + same_time)) + 1.0)) : listed;
-    }
-
-    /// Takes off what has been reached; true if a state is due.
-    bool reached(double density, double time, double time_goal) {
-        bool due = time >= time_goal * (1.0 - same_time);
-        constexpr double same_density = 1e-6;  // relative
-        while (!densities.empty() && density >= densities.front() * (1.0 - same_density)) {
-            densities.erase(densities.begin());
-            due = true;
+    /// Steps to the end; false if a stop was requested on the way.
+    bool run() {
+        while (!wanted_.done(method_->time()) && !full()) {
+            step();
+            if (cli::stop_requested()) {
+                if (sinks_.checkpoint.wanted()) write_checkpoint(false);
+                return false;
+            }
+            if (sinks_.checkpoint.due()) write_checkpoint(false);
         }
-        while (!times.empty() && time >= times.front() * (1.0 - same_time)) times.erase(times.begin());
-        return due;
+        if (full()) {
+            progressed_.converged = false;
+            sinks_.warn("the body is fully dense at " + Json(method_->time()).dump() + " s, which ends the run: this model has no pores that close");
+        } else if (wanted_.densities_left()) {
+            progressed_.converged = false;
+            sinks_.warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() + ", short of the wanted " +
+                        Json(wanted_.next_density()).dump());
+        }
+        return true;
     }
 
-    /// Part of the way covered, for progress.
-    double fraction(const Options& options, double density, double first_density, double time) const {
-        if (!options.densities.empty()) {
-            const double last = *std::max_element(options.densities.begin(), options.densities.end());
-            return (density - first_density) / (last - first_density);
-        }
-        return (time - start) / (*std::max_element(options.times.begin(), options.times.end()) - start);
+    const Progressed& progressed() const { return progressed_; }
+
+    void write_checkpoint(bool finished) {
+        progressed_.finished = finished;
+        progressed_.output_bytes = sinks_.states.flushed_bytes();
+        if (sinks_.history) progressed_.history_bytes = sinks_.history->flushed_bytes();
+        sinks_.checkpoint.write(method_->checkpoint(), progressed_);
     }
+
+   private:
+    bool full() const { return method_->relative_density() >= full_density * (1.0 - same_density); }
+
+    void step() {
+        const double density = method_->relative_density(), time_goal = wanted_.next_time(method_->time());
+        const numerics::StepRecord record = method_->advance(time_goal, std::min(wanted_.next_density(), full_density));
+        progressed_.newton += record.newton;
+        progressed_.conjugate_gradients += record.conjugate_gradients;
+        progressed_.converged = progressed_.converged && record.converged;
+        const Json summary = summary_of(record, options_.method);
+        if (sinks_.history) sinks_.history->write(summary);
+        sinks_.progress.detail(summary);
+        if (density <= validity_limit && record.relative_density > validity_limit)
+            sinks_.warn("above a relative density of 0.9 grains grow, which this model leaves out");
+        sinks_.progress.show(wanted_.fraction(record.relative_density, record.time),
+                             "relative density " + Json(std::round(1e4 * record.relative_density) / 1e4).dump());
+        const bool last_of_all = cli::stop_requested() && !sinks_.checkpoint.wanted();
+        if (wanted_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
+    }
+
+    void write_state(Json summary) {
+        State reached = method_->state();
+        summary["steps"] = method_->steps();
+        if (options_.method == "implicit") {
+            summary["newton"] = progressed_.newton;
+            summary["conjugate_gradients"] = progressed_.conjugate_gradients;
+            summary["converged"] = progressed_.converged;
+        }
+        if (options_.report == "viscosity") add_viscosities(summary, reached, options_);
+        reached.history.push_back(sinks_.entry(summary));
+        sinks_.states.write(std::move(reached));
+    }
+
+    const Options& options_;
+    const Sinks& sinks_;
+    Progressed progressed_;
+    Wanted wanted_;
+    std::unique_ptr<numerics::SinteringMethod> method_;
 };
 
 }  // namespace
 
-bool sinter(State state, const Options& options, const Sinks& sinks) {
-    const double first_density = relative_density(state);
-    Wanted wanted(options, first_density, state.time);
-    numerics::Sintering sintering(std::move(state), options.settings());
-    int newton = 0, conjugate_gradients = 0;
-    bool converged = true;
-    double density = first_density;
-    while (!wanted.done()) {
-        const double time_goal = wanted.next_time(sintering.time());
-        const numerics::StepRecord record = sintering.advance(time_goal, wanted.next_density());
-        newton += record.newton;
-        conjugate_gradients += record.conjugate_gradients;
-        converged = converged && record.converged;
-        Json summary = summary_of(record);
-        summary["temperature"] = options.temperature;
-        if (sinks.history) sinks.history->write(summary);
-        sinks.progress.detail(summary);
-        if (density <= validity_limit && record.relative_density > validity_limit)
-            sinks.warn("above a relative density of 0.9 grains grow, which this model leaves out");
-        density = record.relative_density;
-        sinks.progress.show(wanted.fraction(options, density, first_density, record.time),
-                            "relative density " + Json(std::round(1e4 * density) / 1e4).dump());
-        const bool stop = cli::stop_requested();
-        if (wanted.reached(density, record.time, time_goal) || stop) {
-            summary["steps"] = sintering.steps();
-            summary["newton"] = newton;
-            summary["conjugate_gradients"] = conjugate_gradients;
-            summary["converged"] = converged;
-            State reached = sintering.state();
-            reached.history.push_back(sinks.entry(summary));
-            sinks.states.write(std::move(reached));
-        }
-        if (stop) break;
+int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<Progressed>& earlier) {
+    bool converged = !earlier || earlier->converged;
+    std::size_t document = 0;
+    std::unique_ptr<Sintered> last;
+    for (auto state = input.next_state(); state; state = input.next_state(), ++document) {
+        if (earlier && document < earlier->document) continue;
+        const bool taken_up = earlier && document == earlier->document;
+        Progressed progressed = taken_up ? *earlier : Progressed{.document = document, .fingerprint = "", .arguments = {}, .converged = converged};
+        if (sinks.checkpoint.wanted()) progressed.fingerprint = fingerprint(*state);
+        if (taken_up && progressed.fingerprint != earlier->fingerprint)
+            throw Error("the checkpoint is of another input than document " + std::to_string(document + 1));
+        last = std::make_unique<Sintered>(std::move(*state), options, sinks, progressed);
+        if (taken_up) last->take_up(sinks.checkpoint.state());
+        const bool whole = last->run();
+        converged = last->progressed().converged;
+        if (whole) continue;
+        if (!sinks.checkpoint.wanted()) break;
+        sinks.progress.clear();
+        sinks.warn("stopped; --resume goes on from the checkpoint");
+        return cli::interrupted;
     }
-    return converged;
+    sinks.progress.clear();
+    if (last && sinks.checkpoint.wanted()) last->write_checkpoint(true);
+    if (sinks.history) sinks.history->commit();
+    sinks.states.commit();
+    sinks.checkpoint.remove();
+    return converged ? cli::done : cli::not_converged;
+}
+
+int finish(const std::string& output, const std::string& history, const Progressed& progressed, const Checkpoint& checkpoint) {
+    if (!history.empty()) io::finish_partial(history);
+    io::finish_partial(output);
+    checkpoint.remove();
+    return progressed.converged ? cli::done : cli::not_converged;
 }
 
 }  // namespace kiln::sinter

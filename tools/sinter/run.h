@@ -1,12 +1,14 @@
-// run.h: sinters one state through all wanted densities and times.
+// run.h: sinters every state of a stream through all wanted densities and times.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "cli/progress.h"
 #include "io/files.h"
 #include "options.h"
+#include "tools/sinter/checkpoint.h"
 
 namespace kiln::sinter {
 
@@ -17,11 +19,16 @@ struct Sinks {
     cli::Progress& progress;
     std::function<Json(const Json& summary)> entry;       // history entry of a state from its summary
     std::function<void(const std::string& sentence)> warn;
+    Checkpoint& checkpoint;
 };
 
-/// Sinters the state and writes a state at each wanted density and time, in the order in which they are reached.
-/// Returns false if a step did not converge. Ends early, with the last state written, once a stop is requested.
+/// Sinters the states of the input, or what an earlier run left of them, and writes a state at each wanted density and time, in the
+/// order in which they are reached. Gives the exit status: 3 if a step did not converge or the schedule ended short of a wanted
+/// density. A requested stop ends the run after its step: with the last state written, or in a checkpoint if there is one.
 /// Throws Error for a wanted density or time that lies behind the state.
-bool sinter(State state, const Options& options, const Sinks& sinks);
+int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<Progressed>& earlier);
+
+/// The end of a run whose checkpoint says that only the renaming of its outputs was left.
+int finish(const std::string& output, const std::string& history, const Progressed& progressed, const Checkpoint& checkpoint);
 
 }  // namespace kiln::sinter

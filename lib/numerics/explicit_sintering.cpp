@@ -1,0 +1,217 @@
+// explicit_sintering.cpp: forces by pair, accelerations by particle, steps at the stability limit.
+#include "numerics/explicit_sintering.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/materials.h"
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr double stability_share = 0.5;    // of the longest stable step
+constexpr double largest_closing = 1e-3;   // of the mean radius, of any gap in a step
+constexpr double list_margin = 0.1;        // of the mean radius
+constexpr double record_change = 2e-3;     // of the density's logarithm, after which a record is due
+constexpr int most_steps = 500;            // in a record
+constexpr int most_bisections = 100;
+constexpr double landing_accuracy = 1e-9;
+constexpr std::size_t chunk = 1024;        // particles whose sums are formed together; fixed, so that sums do not depend on threads
+constexpr std::size_t worth_threads = 8192;
+
+}  // namespace
+
+ExplicitSintering::ExplicitSintering(State state, const SinteringSettings& settings) : SinteringMethod(std::move(state), settings) {
+    if (kinetics_.any_rigid()) throw Error("the explicit method has no law for pairs of materials that do not diffuse");
+    const State& working = packing_.working();
+    for (std::size_t kind = 0; kind < working.materials.size() * working.materials.size(); ++kind)
+        if (std::isfinite(kinetics_.neck_limit(kind))) throw Error("the explicit method has no law for the dihedral limit of a neck");
+    const Particles& particles = packing_.particles();
+    for (std::size_t row = 0; row < packing_.size(); ++row) {
+        const Material& material = working.materials[static_cast<std::size_t>(particles.material[row])];
+        const double radius = particles.radius[row];
+        mass_.push_back(settings_.mass_scaling * physics::required(material.density, material, "density") * sphere_volume(radius));
+        box_inertia_ += Vec3::Constant(mass_.back() * 4.0 * radius * radius);
+    }
+    velocity_.assign(packing_.size(), Vec3::Zero());
+    acceleration_ = velocity_;
+    damping_.assign(packing_.size(), 0.0);
+}
+
+void ExplicitSintering::list_pairs() {
+    pairs_ = packing_.pairs_within(list_margin * packing_.mean_radius());
+    force_.resize(pairs_.size());
+    begin_.assign(packing_.size() + 1, 0);
+    first_row_.assign(packing_.size() + 1, 0);
+    for (const Pair& pair : pairs_) {
+        ++first_row_[static_cast<std::size_t>(pair.i) + 1];
+        ++begin_[static_cast<std::size_t>(pair.i) + 1];
+        ++begin_[static_cast<std::size_t>(pair.j) + 1];
+    }
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle) {
+        begin_[particle + 1] += begin_[particle];
+        first_row_[particle + 1] += first_row_[particle];
+    }
+    row_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    for (std::size_t row = 0; row < pairs_.size(); ++row) {
+        row_[next[static_cast<std::size_t>(pairs_[row].i)]++] = static_cast<std::int32_t>(row);
+        row_[next[static_cast<std::size_t>(pairs_[row].j)]++] = -1 - static_cast<std::int32_t>(row);
+    }
+}
+
+ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, const std::vector<double>& diffusion) const {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+    const Vec3 vector = packing_.vector(pair);
+    const double distance = vector.norm();
+    const auto [first, second] = packing_.radii(pair);
+    const double overlap = first + second - distance;
+    PairForce result;
+    if (overlap < 0.0) return result;
+    const Vec3 normal = vector / distance;
+    const Vec3 opening = velocity_[j] - velocity_[i] + strain_rate_.cwiseProduct(vector);
+    const std::size_t kind = kinetics_.row(packing_.particles().material[i], packing_.particles().material[j]);
+    const double reduced = physics::reduced_radius(first, second);
+    result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * overlap * overlap / diffusion[kind];
+    const double shear = physics::tangential_viscosity(settings_.constants, overlap, reduced) / diffusion[kind];
+    const double along = normal.dot(opening);
+    result.force = (physics::sintering_force(settings_.constants, reduced, kinetics_.surface_energy(kind)) + result.viscosity * along) * normal +
+                   shear * (opening - along * normal);
+    result.viscosity += shear;
+    return result;
+}
+
+ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<double>& diffusion) {
+    // Sums go by particles: pairs in the list that do not touch add zeros, so the result does not depend on how far the list reaches.
+    const std::size_t chunks = (packing_.size() + chunk - 1) / chunk;
+    std::vector<BoxForce> parts(chunks);
+#pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
+    for (std::size_t part = 0; part < chunks; ++part)
+        for (std::size_t row = first_row_[part * chunk]; row < first_row_[std::min(packing_.size(), (part + 1) * chunk)]; ++row) {
+            force_[row] = pair_force(pairs_[row], diffusion);
+            const Vec3 vector = packing_.vector(pairs_[row]);
+            parts[part].force += force_[row].force.cwiseProduct(vector);
+            parts[part].viscosity += force_[row].viscosity * vector.cwiseAbs2();
+        }
+#pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle) {
+        Vec3 sum = Vec3::Zero();
+        double viscosity = 0.0;
+        for (std::size_t place = begin_[particle]; place < begin_[particle + 1]; ++place) {
+            const bool second = row_[place] < 0;
+            const PairForce& pair = force_[static_cast<std::size_t>(second ? -1 - row_[place] : row_[place])];
+            sum += second ? Vec3(-pair.force) : pair.force;
+            viscosity += pair.viscosity;
+        }
+        acceleration_[particle] = sum / mass_[particle];
+        damping_[particle] = viscosity / mass_[particle];
+    }
+    BoxForce total;
+    for (const BoxForce& part : parts) {
+        total.force += part.force;
+        total.viscosity += part.viscosity;
+    }
+    return total;
+}
+
+double ExplicitSintering::stable_step(const BoxForce& box) const {
+    // dv/dt = -D v is stable for steps below 2/D; D of a network is at most twice the largest sum of viscosities over mass.
+    double fastest = 0.0, speed = 0.0, push = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : fastest, speed, push) if (packing_.size() >= worth_threads)
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle) {
+        fastest = std::max(fastest, 2.0 * damping_[particle]);
+        speed = std::max(speed, velocity_[particle].norm());
+        push = std::max(push, acceleration_[particle].norm());
+    }
+    for (int axis = 0; axis < 3; ++axis) fastest = std::max(fastest, box.viscosity[axis] / box_inertia_[axis]);
+    const double length = largest_closing * packing_.mean_radius();
+    double step = fastest > 0.0 ? stability_share * 2.0 / fastest : std::numeric_limits<double>::infinity();
+    if (speed > 0.0) step = std::min(step, 0.5 * length / speed);
+    if (push > 0.0) step = std::min(step, std::sqrt(length / push));
+    return step;
+}
+
+void ExplicitSintering::accelerate(const BoxForce& box, double step) {
+#pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle) velocity_[particle] += step * acceleration_[particle];
+    const double volume = packing_.box().volume();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto k = static_cast<Eigen::Index>(axis);
+        if (!packing_.box().periodic[axis] || settings_.fixed[axis]) continue;
+        strain_rate_[k] -= step * (box.force[k] + settings_.pressure[k] * volume) / box_inertia_[k];
+    }
+}
+
+Motion ExplicitSintering::motion_over(double step) const {
+    Motion motion(packing_.size());
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle)
+        Eigen::Map<Vec3>(&motion.displacement[3 * particle]) = step * velocity_[particle];
+    motion.strain = step * strain_rate_;
+    return motion;
+}
+
+double ExplicitSintering::shortened(double step, double log_change) const {
+    double low = 0.0, high = step;  // the density at the end of the step grows with its length
+    for (int halving = 0; halving < most_bisections; ++halving) {
+        const double middle = 0.5 * (low + high), miss = packing_.log_density_change(motion_over(middle)) - log_change;
+        if (std::abs(miss) < landing_accuracy) return middle;
+        (miss > 0.0 ? high : low) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+void ExplicitSintering::step_once(double latest_time, double highest_density, StepRecord& record) {
+    if (packing_.margin() < 2.0 * largest_closing * packing_.mean_radius()) list_pairs();
+    const double now = packing_.time();
+    const BoxForce box = find_forces(kinetics_.diffusion_at(kinetics_.schedule().temperature(now)));
+    double step = stable_step(box);
+    const bool on_time = step >= latest_time - now;
+    if (on_time) step = latest_time - now;
+    if (!std::isfinite(step)) throw Error("no contact drives any motion, so no density can be waited for");
+    accelerate(box, step);
+    const double wanted_change = std::log(highest_density / packing_.density());
+    Motion motion = motion_over(step);
+    double until = on_time ? latest_time : now + step;
+    if (packing_.log_density_change(motion) > wanted_change) {
+        step = shortened(step, wanted_change);
+        motion = motion_over(step);
+        until = now + step;
+    }
+    record.stress = box.force / packing_.box().volume();
+    packing_.apply(motion, until, kinetics_.schedule().temperature(until), packing_.closing_bound(motion));
+}
+
+StepRecord ExplicitSintering::advance(double latest_time, double highest_density) {
+    if (pairs_.empty()) list_pairs();
+    const double start = packing_.time(), density = packing_.density();
+    StepRecord record;
+    for (int step = 0; step < most_steps; ++step) {
+        step_once(latest_time, highest_density, record);
+        ++record.attempts;
+        const bool reached = packing_.time() >= latest_time || packing_.density() >= highest_density * (1.0 - 2.0 * landing_accuracy);
+        if (reached || std::abs(std::log(packing_.density() / density)) > record_change) break;
+    }
+    steps_ += static_cast<std::size_t>(record.attempts);
+    record.time = packing_.time();
+    record.duration = record.time - start;
+    record.temperature = *packing_.working().temperature;
+    record.relative_density = packing_.density();
+    record.strain = packing_.strain();
+    record.contacts = packing_.statistics();
+    return record;
+}
+
+Json ExplicitSintering::numbers() const { return {{"strain_rate", {strain_rate_[0], strain_rate_[1], strain_rate_[2]}}}; }
+
+std::vector<NamedArray> ExplicitSintering::arrays() const { return {{"velocity", {{packing_.size(), 3}, motion_over(1.0).displacement}}}; }
+
+void ExplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
+    const std::vector<double> velocity = column_of(arrays, "velocity", packing_.size());
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle) velocity_[particle] = Eigen::Map<const Vec3>(&velocity[3 * particle]);
+    for (std::size_t axis = 0; axis < 3; ++axis) strain_rate_[static_cast<Eigen::Index>(axis)] = numbers.at("strain_rate").at(axis);
+    list_pairs();
+}
+
+}  // namespace kiln::numerics

@@ -1,0 +1,323 @@
+// implicit_sintering.cpp: the loop around the implicit step: candidates, trial steps, step control, landing.
+#include "numerics/implicit_sintering.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr double largest_closing = 1.0;     // of the mean radius, of any gap in a step
+constexpr double first_reach = 0.03;        // of the mean radius, that the first step looks beyond touch
+constexpr double sticking_gap = 1e-6;       // of the reduced radius, between rigid particles that touch
+constexpr double largest_log_step = 0.05;   // of the density
+constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
+constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
+constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
+constexpr std::size_t most_idle_steps = 100;
+constexpr double idle = 1e-10;              // log density change of an idle step
+
+constexpr double landing_solver = 0.05;     // tolerance of the solver there, over that of other steps
+constexpr double landing_accuracy = 1e-7;   // relative, of a wanted density
+constexpr int most_landings = 40;           // attempts to end a step at a wanted density
+constexpr int most_rejections = 20;         // of one step
+
+}  // namespace
+
+ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& settings) : SinteringMethod(std::move(state), settings) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !packing_.box().periodic[axis]))
+            throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
+    next_duration_ = first_duration();
+}
+
+PairStep ImplicitSintering::pair_step(const Pair& pair, const std::vector<double>& diffusion) const {
+    const Particles& particles = packing_.particles();
+    const auto [first, second] = packing_.radii(pair);
+    const std::size_t kind = kinetics_.row(particles.material[static_cast<std::size_t>(pair.i)],
+                                           particles.material[static_cast<std::size_t>(pair.j)]);
+    PairStep step{};
+    step.vector = step.lever = packing_.vector(pair);
+    step.distance = step.vector.norm();
+    step.overlap = first + second - step.distance;
+    step.reduced_radius = physics::reduced_radius(first, second);
+    if (kinetics_.rigid(kind)) {
+        step.limit = std::max(0.0, -step.overlap);
+        return step;
+    }
+    const double most = physics::overlap_of_neck(kinetics_.neck_limit(kind) * std::min(first, second), step.reduced_radius);
+    step.limit = std::max(0.0, most - step.overlap);
+    step.force = unit_ * physics::sintering_force(settings_.constants, step.reduced_radius, kinetics_.surface_energy(kind));
+    step.cubic = unit_ * physics::normal_viscosity_factor(settings_.constants, step.reduced_radius) / diffusion[kind];
+    step.shear = unit_ * physics::tangential_viscosity(settings_.constants, 1.0, step.reduced_radius) / diffusion[kind];
+    return step;
+}
+
+void ImplicitSintering::gather_candidates(const std::vector<Pair>& pairs, double closing, const std::vector<double>& diffusion) {
+    // Forces in a unit that makes stiffness a plain number near one, whatever the sizes, times and temperatures.
+    const double radius = packing_.mean_radius();
+    unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
+            (physics::normal_viscosity_factor(settings_.constants, 0.5 * radius) * radius * radius);
+    std::vector<PairStep> steps(pairs.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < pairs.size(); ++row) steps[row] = pair_step(pairs[row], diffusion);
+    candidates_.pairs.clear();
+    candidates_.steps.clear();
+    candidates_.touching.clear();
+    candidates_.sticking.clear();
+    for (std::size_t row = 0; row < pairs.size(); ++row) {
+        const PairStep& step = steps[row];
+        if (step.overlap <= -closing) continue;
+        const bool sticks = !(step.cubic > 0.0) && step.overlap > -sticking_gap * step.reduced_radius;
+        if (step.overlap >= 0.0 || sticks) candidates_.touching.push_back(pairs[row]);
+        if (sticks) {
+            candidates_.sticking.push_back(pairs[row]);
+        } else {
+            candidates_.pairs.push_back(pairs[row]);
+            candidates_.steps.push_back(step);
+        }
+    }
+}
+
+void ImplicitSintering::turn_to_nodes(const RigidClusters& clusters) {
+    if (candidates_.sticking.empty()) return;
+    struct Row {
+        Pair pair;
+        PairStep step;
+    };
+    std::vector<Row> rows;
+    for (std::size_t row = 0; row < candidates_.pairs.size(); ++row) {
+        bool turned = false;
+        const Pair seen = clusters.seen(candidates_.pairs[row], turned);
+        if (RigidClusters::inert(seen)) continue;
+        PairStep step = candidates_.steps[row];
+        if (turned) step.vector = -step.vector;
+        step.lever = pair_vector(packing_.box(), clusters.places(), seen);
+        rows.push_back({seen, step});
+    }
+    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+        return std::tie(a.pair.i, a.pair.j, a.pair.image) < std::tie(b.pair.i, b.pair.j, b.pair.image);
+    });
+    candidates_.pairs.clear();
+    candidates_.steps.clear();
+    for (const Row& row : rows) {
+        candidates_.pairs.push_back(row.pair);
+        candidates_.steps.push_back(row.step);
+    }
+}
+
+double ImplicitSintering::first_duration() {
+    const std::vector<double> each(kinetics_.diffusion_at(kinetics_.schedule().highest()));
+    unit_ = 1.0;
+    double shortest = std::numeric_limits<double>::infinity(), overlap = 0.0;
+    std::size_t contacts = 0;
+    std::vector<PairStep> steps;
+    for (const Pair& pair : packing_.pairs()) {
+        steps.push_back(pair_step(pair, each));
+        if (steps.back().overlap < 0.0) continue;
+        overlap += steps.back().overlap / steps.back().reduced_radius;
+        ++contacts;
+    }
+    if (contacts > 0) overlap /= static_cast<double>(contacts);
+    for (const PairStep& step : steps) {  // time in which a pair of mean overlap closes by first_closing
+        const double start = overlap * step.reduced_radius, end = start + 2.0 * first_closing * step.reduced_radius;
+        if (step.cubic > 0.0)
+            shortest = std::min(shortest, step.cubic * (end * end * end - start * start * start) / (3.0 * step.force));
+    }
+    return std::isfinite(shortest) ? shortest : 1.0;
+}
+
+Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& locked) const {
+    // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that contacts
+    // do reach through, so that loose clusters move with the flow of the whole.
+    const std::array<bool, 3> percolates = percolating_axes(packing_.size(), candidates_.touching);
+    std::vector<Vec3> basis;
+    Vec3 followers = Vec3::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!packing_.box().periodic[axis] || settings_.fixed[axis] || locked[axis]) continue;
+        const Vec3 along = Vec3::Unit(static_cast<Eigen::Index>(axis));
+        if (percolates[axis])
+            basis.push_back(along);
+        else
+            followers += along;
+    }
+    if (basis.empty()) return Eigen::Matrix3d::Zero();
+    Eigen::MatrixXd columns(3, basis.size());
+    for (std::size_t k = 0; k < basis.size(); ++k)
+        columns.col(static_cast<Eigen::Index>(k)) = basis[k] + followers / static_cast<double>(basis.size());
+    return columns * (columns.transpose() * columns).ldlt().solve(columns.transpose());
+}
+
+Motion ImplicitSintering::guess_from(const Motion& motion, double factor) const {
+    Motion guess(packing_.size());
+    if (motion.displacement.size() != guess.displacement.size()) return guess;
+    for (std::size_t k = 0; k < guess.displacement.size(); ++k) guess.displacement[k] = factor * motion.displacement[k];
+    guess.strain = factor * motion.strain;
+    return guess;
+}
+
+ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double until, const Motion& guess, bool tight) {
+    const double radius = packing_.mean_radius();
+    ++attempts_;
+    double closing = last_duration_ > 0.0 ? 1.2 * last_closing_ * std::max(1.0, duration / last_duration_) : first_reach * radius;
+    closing = std::min(closing, largest_closing * radius);
+    const std::vector<double> diffusion = kinetics_.diffusion_over(packing_.time(), until);
+    for (;;) {
+        gather_candidates(packing_.pairs_within(closing), closing, diffusion);
+        const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking);
+        turn_to_nodes(clusters);
+        StepSettings settings;
+        settings.allowed_strain = allowed_strain(clusters.locked());
+        settings.pressure = unit_ * settings_.pressure;
+        settings.solver_tolerance = settings_.solver_tolerance * (tight ? landing_solver : 1.0);
+        settings.second_order = settings_.second_order;
+        SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs, settings);
+        Motion motion = clusters.nodes(guess), first_order;
+        project(motion, settings.allowed_strain);
+        Trial trial;
+        trial.until = until;
+        trial.report = solver.solve(candidates_.steps, motion, first_order);
+        for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
+            trial.report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / unit_ : 0.0;
+        trial.motion = clusters.particles(motion, packing_.particles().position);
+        trial.first_order = clusters.particles(first_order, packing_.particles().position);
+        newton_ += trial.report.newton;
+        conjugate_gradients_ += trial.report.conjugate_gradients;
+        trial.closing = packing_.closing_bound(trial.motion);
+        trial.leapt = trial.closing > largest_closing * radius;  // no list of pairs is made for such a leap: the step is too long
+        if (!trial.leapt && trial.closing > closing) {           // pairs that were left out might have come to touch
+            closing = 1.2 * trial.closing;
+            continue;
+        }
+        trial.log_density = packing_.log_density_change(trial.motion);
+        trial.first_log_density = packing_.log_density_change(trial.first_order);
+        return trial;
+    }
+}
+
+ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& duration, const Trial& beyond) {
+    // The density is a smooth function of the step's length: secants, kept inside the bracket.
+    double low = 0.0, high = duration;
+    double before = 0.0, before_miss = -log_change, here = duration, miss = beyond.log_density - log_change;
+    Trial trial = beyond;
+    for (int iteration = 0; iteration < most_landings; ++iteration) {
+        const double secant = here - miss * (here - before) / (miss - before_miss);
+        before = here;
+        before_miss = miss;
+        here = secant > low && secant < high ? secant : 0.5 * (low + high);
+        trial = attempt(here, kinetics_.after(packing_.time(), here), guess_from(trial.motion, here / before), true);
+        miss = trial.log_density - log_change;
+        if (std::abs(miss) <= landing_accuracy) break;
+        (miss > 0.0 ? high : low) = here;
+    }
+    duration = here;
+    return trial;
+}
+
+ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time) {
+    const double room = kinetics_.equivalent(packing_.time(), latest_time);
+    duration = std::min(next_duration_, room);
+    const bool ends_on_time = duration < next_duration_ || room == next_duration_;
+    double until = ends_on_time ? latest_time : kinetics_.after(packing_.time(), duration);
+    const double wanted_error = settings_.tolerance / (third_order_factor * typical_log_range);
+    const double slowing = rate_before_ > 0.0 && last_rate_ > 0.0 ? std::clamp(last_rate_ / rate_before_, 0.5, 1.0) : 1.0;
+    Motion guess = guess_from(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
+    Trial trial;
+    double difference = 0.0;
+    for (int rejected = 0;; ++rejected) {
+        trial = attempt(duration, until, guess, false);
+        difference = std::abs(trial.log_density - trial.first_log_density);
+        if (!trial.leapt && difference <= 2.0 * wanted_error && std::abs(trial.log_density) <= largest_log_step &&
+            trial.report.converged)
+            break;
+        if (rejected == most_rejections) {
+            if (trial.leapt)
+                throw Error("particles leap by more than a radius however short the step is at " + std::to_string(packing_.time()) + " s");
+            break;  // the record says that it did not converge
+        }
+        const double factor = std::clamp(0.8 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.2, 0.7);
+        guess = trial.leapt ? Motion(packing_.size()) : guess_from(trial.motion, factor);
+        duration *= factor;
+        until = kinetics_.after(packing_.time(), duration);
+    }
+    const double growth = std::clamp(0.9 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.5, 2.5);
+    next_duration_ = ends_on_time && until == latest_time ? std::max(next_duration_, duration * growth) : duration * growth;
+    const double room_left = 0.8 * largest_log_step / std::max(std::abs(trial.log_density), 1e-300);
+    next_duration_ = std::min(next_duration_, duration * std::max(room_left, 0.5));
+    return trial;
+}
+
+StepRecord ImplicitSintering::advance(double latest_time, double highest_density) {
+    const double wanted_change = std::log(highest_density / packing_.density());
+    const double start = packing_.time();
+    double duration = 0.0;
+    Trial trial;
+    if (!(kinetics_.equivalent(start, latest_time) > 0.0)) {  // too cold for any motion
+        trial.until = latest_time;
+        trial.motion = trial.first_order = Motion(packing_.size());
+    } else {
+        trial = accepted_attempt(duration, latest_time);
+        if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
+    }
+    idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
+    if (idle_steps_ > most_idle_steps && std::isfinite(highest_density))
+        throw Error("the density stays at " + std::to_string(packing_.density()) + "; no contact is left that densifies the box, so " +
+                    std::to_string(highest_density) + " cannot be reached");
+    StepRecord record = finish(trial, duration);
+    record.duration = record.time - start;
+    return record;
+}
+
+StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
+    packing_.apply(trial.motion, trial.until, kinetics_.schedule().temperature(trial.until), trial.closing);
+    ++steps_;
+    if (duration > 0.0) {
+        last_motion_ = trial.motion;
+        rate_before_ = std::exchange(last_rate_, trial.log_density / duration);
+        last_closing_ = trial.closing;
+        last_duration_ = duration;
+    }
+    error_ += third_order_factor * std::abs(trial.log_density - trial.first_log_density) * std::abs(trial.log_density);
+    StepRecord record;
+    record.time = packing_.time();
+    record.temperature = *packing_.working().temperature;
+    record.relative_density = packing_.density();
+    record.strain = packing_.strain();
+    record.stress = trial.report.stress;
+    record.contacts = packing_.statistics();
+    record.error = error_;
+    record.attempts = std::exchange(attempts_, 0);
+    record.newton = std::exchange(newton_, 0);
+    record.conjugate_gradients = std::exchange(conjugate_gradients_, 0);
+    record.converged = trial.report.converged;
+    return record;
+}
+
+Json ImplicitSintering::numbers() const {
+    return {{"last_rate", last_rate_},         {"rate_before", rate_before_},     {"last_closing", last_closing_},
+            {"last_duration", last_duration_}, {"next_duration", next_duration_}, {"density_error", error_},
+            {"idle_steps", idle_steps_},       {"last_strain", {last_motion_.strain[0], last_motion_.strain[1], last_motion_.strain[2]}}};
+}
+
+std::vector<NamedArray> ImplicitSintering::arrays() const {
+    return {{"last_motion", {{packing_.size(), 3}, guess_from(last_motion_, 1.0).displacement}}};
+}
+
+void ImplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
+    last_rate_ = numbers.at("last_rate");
+    rate_before_ = numbers.at("rate_before");
+    last_closing_ = numbers.at("last_closing");
+    last_duration_ = numbers.at("last_duration");
+    next_duration_ = numbers.at("next_duration");
+    error_ = numbers.at("density_error");
+    idle_steps_ = numbers.at("idle_steps");
+    for (std::size_t axis = 0; axis < 3; ++axis) last_motion_.strain[static_cast<Eigen::Index>(axis)] = numbers.at("last_strain").at(axis);
+    last_motion_.displacement = column_of(arrays, "last_motion", packing_.size());
+}
+
+}  // namespace kiln::numerics

@@ -1,0 +1,58 @@
+// implicit_sintering.h: overdamped sintering in implicit steps, with step control and exact landing on wanted times and densities.
+#pragma once
+
+#include "numerics/rigid_clusters.h"
+#include "numerics/sinter_step.h"
+#include "numerics/sintering.h"
+
+namespace kiln::numerics {
+
+class ImplicitSintering : public SinteringMethod {
+   public:
+    /// Throws Error where the materials lack what the contact law needs, centres coincide, or a pressure has no face to act on.
+    ImplicitSintering(State state, const SinteringSettings& settings);
+
+    StepRecord advance(double latest_time, double highest_density) override;
+
+   private:
+    Json numbers() const override;
+    std::vector<NamedArray> arrays() const override;
+    void take_up(const Json& numbers, const std::vector<NamedArray>& arrays) override;
+    /// A trial step and what it led to.
+    struct Trial {
+        Motion motion, first_order;
+        StepReport report;
+        double until = 0.0;                                 // s
+        double log_density = 0.0, first_log_density = 0.0;  // change over the step
+        double closing = 0.0;                               // bound of how much any gap closed, m
+        bool leapt = false;                                 // further than any list of pairs reaches
+    };
+    /// Pairs that may touch in a step, as the nodes see them.
+    struct Candidates {
+        std::vector<Pair> pairs;
+        std::vector<PairStep> steps;
+        std::vector<Pair> touching, sticking;  // of particles
+    };
+    PairStep pair_step(const Pair& pair, const std::vector<double>& diffusion) const;
+    void gather_candidates(const std::vector<Pair>& pairs, double closing, const std::vector<double>& diffusion);
+    void turn_to_nodes(const RigidClusters& clusters);
+    Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
+    Trial attempt(double duration, double until, const Motion& guess, bool tight);
+    Trial accepted_attempt(double& duration, double latest_time);
+    Trial land_on(double log_change, double& duration, const Trial& beyond);
+    Motion guess_from(const Motion& motion, double factor) const;
+    double first_duration();
+    StepRecord finish(const Trial& trial, double duration);
+
+    Candidates candidates_;
+    double unit_ = 1.0;                // of forces in a step, over 1 N
+    Motion last_motion_;               // of the last step, the guess of the next one
+    double last_rate_ = 0.0, rate_before_ = 0.0;  // of the logarithm of the density in the last two steps, 1/s of equivalent time
+    double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m
+    double last_duration_ = 0.0, next_duration_ = 0.0;  // s of equivalent time
+    double error_ = 0.0;
+    std::size_t idle_steps_ = 0;
+    int attempts_ = 0, newton_ = 0, conjugate_gradients_ = 0;  // since the last accepted step
+};
+
+}  // namespace kiln::numerics

@@ -1,0 +1,107 @@
+// kinetics.cpp: tables over pairs of materials, and equivalent time and its inverse.
+#include "numerics/kinetics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "physics/diffusion.h"
+#include "physics/materials.h"
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr double same = 1e-15;  // relative, of equivalent times
+constexpr int most_halvings = 200;
+
+/// Largest contact radius over particle radius at equilibrium of grain boundary and surface, a/R = sin(psi/2); Bouvard & McMeeking 1996.
+double neck_limit_of(const Material& material) {
+    return material.dihedral_angle ? std::sin(0.5 * *material.dihedral_angle) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Kinetics::Kinetics(const State& state, const physics::Schedule& schedule)
+    : schedule_(schedule), materials_(state.materials.size()), material_(state.materials) {
+    const std::size_t rows = materials_ * materials_;
+    given_.resize(rows);
+    for (const Material& a : material_)
+        for (const Material& b : material_) {
+            energy_.push_back(physics::mixed_surface_energy(physics::required(a.surface_energy, a, "surface_energy"),
+                                                            physics::required(b.surface_energy, b, "surface_energy")));
+            neck_limit_.push_back(std::min(neck_limit_of(a), neck_limit_of(b)));
+        }
+    for (const MaterialPair& pair : state.contacts)
+        for (const auto& [a, b] : {std::pair(pair.materials[0], pair.materials[1]), std::pair(pair.materials[1], pair.materials[0])}) {
+            if (pair.diffusion_parameter) given_[row(a, b)] = *pair.diffusion_parameter;
+            if (pair.surface_energy) energy_[row(a, b)] = *pair.surface_energy;
+        }
+    for (std::size_t pair = 0; pair < rows; ++pair) {
+        const double value = diffusion(pair, schedule_.highest());
+        rigid_.push_back(!(value > 0.0));
+        any_rigid_ = any_rigid_ || rigid_.back();
+        if (value > fastest_) {
+            fastest_ = value;
+            fastest_row_ = pair;
+        }
+    }
+    if (!(fastest_ > 0.0)) throw Error("no pair of materials diffuses, so nothing can sinter");
+    if (!std::isfinite(schedule_.end())) return;
+    times_ = schedule_.panels(schedule_.begin(), schedule_.end());
+}
+
+double Kinetics::diffusion(std::size_t pair, double temperature) const {
+    if (given_[pair]) return *given_[pair];
+    return physics::mixed_diffusion_parameter(physics::diffusion_parameter_of(material_[pair / materials_], temperature),
+                                              physics::diffusion_parameter_of(material_[pair % materials_], temperature));
+}
+
+std::vector<double> Kinetics::diffusion_at(double temperature) const {
+    std::vector<double> table;
+    for (std::size_t pair = 0; pair < energy_.size(); ++pair) table.push_back(diffusion(pair, temperature));
+    return table;
+}
+
+std::vector<double> Kinetics::diffusion_over(double from, double until) const {
+    std::vector<double> table;
+    for (std::size_t pair = 0; pair < energy_.size(); ++pair)
+        table.push_back(schedule_.integral(from, until, [&](double temperature) { return diffusion(pair, temperature); }));
+    return table;
+}
+
+double Kinetics::equivalent(double from, double until) const {
+    if (std::isinf(until)) return until;
+    return schedule_.integral(from, until, [&](double temperature) { return diffusion(fastest_row_, temperature) / fastest_; });
+}
+
+double Kinetics::after(double from, double wanted) const {
+    if (times_.empty()) return from + wanted;
+    double low = from, left = wanted;  // what is left of the wanted equivalent time at `low`
+    for (auto next = std::upper_bound(times_.begin(), times_.end(), from); next != times_.end(); ++next) {
+        const double passes = equivalent(low, *next);
+        if (passes < left) {
+            left -= passes;
+            low = *next;
+            continue;
+        }
+        double high = *next;  // the time lies between: Newton, kept inside the bracket
+        const double begin = low;
+        double time = begin + left / passes * (high - begin);
+        for (int halving = 0; halving < most_halvings && high > low; ++halving) {
+            const double miss = equivalent(begin, time) - left;
+            if (std::abs(miss) <= same * left) break;
+            (miss > 0.0 ? high : low) = time;
+            const double better = time - miss * fastest_ / diffusion(fastest_row_, schedule_.temperature(time));
+            const double before = time;
+            time = better > low && better < high ? better : 0.5 * (low + high);
+            if (time == before) break;
+        }
+        return time;
+    }
+    const double rate = diffusion(fastest_row_, schedule_.temperature(low)) / fastest_;  // the last temperature stays
+    return rate > 0.0 ? low + left / rate : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace kiln::numerics

@@ -1,0 +1,131 @@
+// packing.cpp: memory order, the list of pairs with its margin, and the body's extent along free faces.
+#include "numerics/packing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/spatial_order.h"
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr double list_margin = 0.06;  // of a radius, that the list of pairs reaches beyond touch
+constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
+constexpr std::size_t worth_threads = 8192;  // particles from which a pass takes longer than waking and joining threads
+
+}  // namespace
+
+Packing::Packing(State state, Faces faces) : state_(std::move(state)) {
+    Particles& particles = state_.particles;
+    if (particles.size() == 0) throw Error("the state has no particles");
+    if (state_.bonds) throw Error("the state has bonds; sintering takes a packing without them");
+    for (Vec3& position : particles.position) position = state_.box.wrap(position);
+    if (faces != Faces::as_given) state_.box.periodic.fill(faces == Faces::periodic);
+    largest_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());
+    solid_ = particle_volume(particles);
+    mean_radius_ = std::cbrt(solid_ / static_cast<double>(particles.size()) * 0.75 / std::numbers::pi);
+    order_ = spatial_order(state_.box, particles.position, 2.0 * largest_radius_);
+    particles = take_rows(particles, order_);
+    density_ = solid_ / state_.box.volume();
+    find_pairs(0.0);
+}
+
+void Packing::find_pairs(double closing) {
+    const Particles& particles = state_.particles;
+    margin_left_ = std::max(list_margin * mean_radius_, 1.5 * closing);
+    std::vector<double> reach = particles.radius;
+    for (double& each : reach) each += 0.5 * margin_left_;
+    pairs_ = kiln::find_pairs(state_.box, particles.position, reach);
+    for (const Pair& pair : pairs_) {
+        const auto [first, second] = radii(pair);
+        if (vector(pair).norm() < coincident * (first + second))
+            throw Error("the centres of particles " + std::to_string(particles.id[static_cast<std::size_t>(pair.i)]) + " and " +
+                        std::to_string(particles.id[static_cast<std::size_t>(pair.j)]) + " coincide");
+    }
+}
+
+const std::vector<Pair>& Packing::pairs_within(double closing) {
+    if (margin_left_ < closing) find_pairs(closing);
+    return pairs_;
+}
+
+double Packing::closing_bound(const Motion& motion) const {
+    double largest = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : largest) if (size() >= worth_threads)
+    for (std::size_t row = 0; row < size(); ++row)
+        largest = std::max(largest, Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm());
+    return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * (2.0 * largest_radius_ + margin_left_);
+}
+
+Vec3 Packing::body_stretch(const Motion& motion) const {
+    const Particles& particles = state_.particles;
+    const auto& periodic = state_.box.periodic;
+    Vec3 stretch = Vec3::Ones();
+    if (periodic[0] && periodic[1] && periodic[2]) return stretch;
+    double mass = 0.0;
+    Vec3 sum = Vec3::Zero(), square = Vec3::Zero(), sum_after = Vec3::Zero(), square_after = Vec3::Zero();
+    for (std::size_t row = 0; row < size(); ++row) {  // about the first particle, so that squares keep their digits
+        const double m = particles.radius[row] * particles.radius[row] * particles.radius[row];
+        const Vec3 before = particles.position[row] - particles.position[0];
+        const Vec3 after = before + Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
+        mass += m;
+        sum += m * before;
+        square += m * before.cwiseProduct(before);
+        sum_after += m * after;
+        square_after += m * after.cwiseProduct(after);
+    }
+    const Vec3 spread = square / mass - (sum / mass).cwiseAbs2(), spread_after = square_after / mass - (sum_after / mass).cwiseAbs2();
+    const double least = 1e-12 * largest_radius_ * largest_radius_;  // a body of one layer does not shrink across it
+    for (int axis = 0; axis < 3; ++axis)
+        if (!periodic[static_cast<std::size_t>(axis)] && spread[axis] > least)
+            stretch[axis] = std::sqrt(spread_after[axis] / spread[axis]);
+    return stretch;
+}
+
+double Packing::log_density_change(const Motion& motion) const {
+    return -std::log1p(motion.strain[0]) - std::log1p(motion.strain[1]) - std::log1p(motion.strain[2]) -
+           body_stretch(motion).array().log().sum();
+}
+
+void Packing::apply(const Motion& motion, double until, double temperature, double closing) {
+    Box& box = state_.box;
+    const Vec3 body = body_stretch(motion);
+    const Vec3 stretch = Vec3::Ones() + motion.strain;
+#pragma omp parallel for schedule(static) if (size() >= worth_threads)
+    for (std::size_t row = 0; row < size(); ++row) {
+        Vec3& position = state_.particles.position[row];
+        position = box.origin + stretch.cwiseProduct(position - box.origin) + Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
+    }
+    const Vec3 middle = box.origin + 0.5 * box.lengths, both = stretch.cwiseProduct(body);
+    for (int axis = 0; axis < 3; ++axis)  // a free body's box shrinks towards its middle, a periodic one towards its origin
+        if (!box.periodic[static_cast<std::size_t>(axis)]) box.origin[axis] = middle[axis] - 0.5 * body[axis] * box.lengths[axis];
+    box.lengths = box.lengths.cwiseProduct(both);
+    strain_ += both.array().log().matrix();
+    state_.time = until;
+    state_.temperature = temperature;
+    density_ = solid_ / state_.box.volume();
+    margin_left_ -= closing;
+}
+
+State Packing::state() const {
+    State result = state_;
+    std::vector<std::int32_t> back(order_.size());
+    for (std::size_t row = 0; row < order_.size(); ++row) back[static_cast<std::size_t>(order_[row])] = static_cast<std::int32_t>(row);
+    result.particles = take_rows(state_.particles, back);
+    for (Vec3& position : result.particles.position) position = result.box.wrap(position);
+    return result;
+}
+
+void Packing::restore(const Box& box, std::vector<Vec3> position, double time, double temperature, const Vec3& strain) {
+    state_.box = box;
+    state_.particles.position = std::move(position);
+    state_.time = time;
+    state_.temperature = temperature;
+    strain_ = strain;
+    density_ = solid_ / state_.box.volume();
+    find_pairs(0.0);
+}
+
+}  // namespace kiln::numerics

@@ -1,0 +1,124 @@
+// viscosity.cpp: four linear solves on the contact network, one without strain and one for each axis.
+#include "numerics/viscosity.h"
+
+#include <algorithm>
+
+#include "numerics/conjugate_gradients.h"
+#include "numerics/kinetics.h"
+#include "numerics/packing.h"
+#include "numerics/rigid_clusters.h"
+
+namespace kiln::numerics {
+
+namespace {
+
+constexpr double accuracy = 1e-7;       // of the solves, energy norm
+constexpr double least_overlap = 1e-3;  // of the reduced radius, see viscosity.h
+constexpr int refinements = 2;  // the solver's stiffness is in single precision
+
+/// Touching contacts of a state as the nodes see them; viscosities over `unit`, which makes them plain numbers near one.
+struct Contacts {
+    std::vector<Pair> pairs;
+    std::vector<Vec3> levers, normals;              // m; unit vectors
+    std::vector<double> force, normal, tangential;  // N; viscosities
+    double unit = 0.0;                              // N s/m
+};
+
+Contacts contacts_of(const Packing& packing, const Kinetics& kinetics, const physics::ContactConstants& constants,
+                     const std::vector<double>& diffusion, const RigidClusters& clusters) {
+    Contacts contacts;
+    for (const Pair& pair : packing.pairs()) {
+        const Vec3 vector = packing.vector(pair);
+        const auto [first, second] = packing.radii(pair);
+        const double overlap = first + second - vector.norm();
+        bool turned = false;
+        const Pair seen = clusters.seen(pair, turned);
+        if (overlap < 0.0 || RigidClusters::inert(seen)) continue;
+        const auto& material = packing.particles().material;
+        const std::size_t kind = kinetics.row(material[static_cast<std::size_t>(pair.i)], material[static_cast<std::size_t>(pair.j)]);
+        if (kinetics.rigid(kind)) continue;
+        const double reduced = physics::reduced_radius(first, second), aged = std::max(overlap, least_overlap * reduced);
+        contacts.pairs.push_back(seen);
+        contacts.levers.push_back(pair_vector(packing.box(), clusters.places(), seen));
+        contacts.normals.push_back((turned ? -1.0 : 1.0) * vector.normalized());
+        contacts.force.push_back(physics::sintering_force(constants, reduced, kinetics.surface_energy(kind)));
+        contacts.normal.push_back(physics::normal_viscosity_factor(constants, reduced) * aged * aged / diffusion[kind]);
+        contacts.tangential.push_back(physics::tangential_viscosity(constants, aged, reduced) / diffusion[kind]);
+    }
+    for (const double value : contacts.normal) contacts.unit = std::max(contacts.unit, value);
+    return contacts;
+}
+
+/// The network with the contacts' stiffness, in single precision.
+void fill(ContactNetwork& network, const Contacts& contacts) {
+    for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
+        const auto row = static_cast<std::size_t>(network.pair[entry]);
+        network.nx[entry] = static_cast<float>(contacts.normals[row][0]);
+        network.ny[entry] = static_cast<float>(contacts.normals[row][1]);
+        network.nz[entry] = static_cast<float>(contacts.normals[row][2]);
+        network.normal[entry] = static_cast<float>(contacts.normal[row] / contacts.unit);
+        network.tangential[entry] = static_cast<float>(contacts.tangential[row] / contacts.unit);
+    }
+}
+
+std::vector<Pair> sticking_pairs(const Packing& packing, const Kinetics& kinetics) {
+    std::vector<Pair> sticking;
+    for (const Pair& pair : packing.pairs()) {
+        const auto [first, second] = packing.radii(pair);
+        const auto& material = packing.particles().material;
+        const std::size_t kind = kinetics.row(material[static_cast<std::size_t>(pair.i)], material[static_cast<std::size_t>(pair.j)]);
+        if (kinetics.rigid(kind) && packing.vector(pair).norm() <= first + second) sticking.push_back(pair);
+    }
+    return sticking;
+}
+
+}  // namespace
+
+ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature) {
+    for (const bool axis : state.box.periodic)
+        if (!axis) throw Error("viscosities are those of a box that is periodic along all axes");
+    const Packing packing(state, Faces::as_given);
+    const Kinetics kinetics(state, physics::Schedule::hold(temperature));
+    const RigidClusters clusters(packing.box(), packing.particles().position, sticking_pairs(packing, kinetics));
+    Contacts contacts = contacts_of(packing, kinetics, constants, kinetics.diffusion_at(temperature), clusters);
+    ViscousResponse response;
+    if (contacts.pairs.empty()) return response;
+
+    ContactNetwork network(packing.box(), clusters.places(), contacts.pairs);
+    fill(network, contacts);
+    Preconditioner preconditioner(network);
+    preconditioner.factorise(network, contacts.levers);
+    ConjugateGradients solver(network.particles());
+    std::vector<double> total(3 * network.particles());
+    const auto stress_under = [&](const Vec3& strain_rate, double drive) -> Vec3 {
+        Motion motion(network.particles()), forces(network.particles()), correction(network.particles());
+        motion.strain = strain_rate;
+        const auto unbalanced = [&] {
+            network.gather(motion, forces, total, [&](std::size_t entry, const Vec3& du) -> Vec3 {
+                const auto row = static_cast<std::size_t>(network.pair[entry]);
+                const double along = contacts.normals[row].dot(du);
+                return (drive * contacts.force[row] + (contacts.normal[row] - contacts.tangential[row]) * along) / contacts.unit *
+                           contacts.normals[row] +
+                       contacts.tangential[row] / contacts.unit * du;
+            });
+        };
+        LinearGoal goal{.tolerance = accuracy};
+        for (int pass = 0; pass <= refinements; ++pass) {
+            unbalanced();
+            for (double& component : forces.displacement) component = -component;
+            forces.strain.setZero();
+            const LinearSolve solve = solver.solve(network, preconditioner, Eigen::Matrix3d::Zero(), forces, correction, goal);
+            response.conjugate_gradients += solve.iterations;
+            response.converged = response.converged && solve.iterations < goal.most_iterations;
+            goal.enough = std::max(goal.enough, accuracy * accuracy * solve.start);  // what is left then may be rounding
+            add(network, 1.0, correction, motion);
+        }
+        unbalanced();
+        return contacts.unit / packing.box().volume() * forces.strain;
+    };
+    response.sintering_stress = stress_under(Vec3::Zero(), 1.0);
+    for (int axis = 0; axis < 3; ++axis) response.viscosity.col(axis) = stress_under(Vec3::Unit(axis), 0.0);
+    return response;
+}
+
+}  // namespace kiln::numerics

@@ -1,0 +1,30 @@
+// viscosity.h: what a packing is as a continuum while it sinters: sintering stress, bulk and shear viscosity.
+#pragma once
+
+#include "core/state.h"
+#include "physics/sinter_contact.h"
+
+namespace kiln::numerics {
+
+/// Linear response of a periodic packing at rest: stress = sintering stress + viscosity * strain rate, along the axes of the box.
+struct ViscousResponse {
+    Vec3 sintering_stress = Vec3::Zero();                  // Pa, tension that holds the box still
+    Eigen::Matrix3d viscosity = Eigen::Matrix3d::Zero();   // Pa s, stress along a row's axis for a strain rate along a column's
+    int conjugate_gradients = 0;
+    bool converged = true;
+
+    double mean_sintering_stress() const { return sintering_stress.mean(); }       // Pa
+    double bulk_viscosity() const { return viscosity.sum() / 9.0; }                // Pa s
+    /// Of the isotropic average of the entries along the axes, Pa s.
+    double shear_viscosity() const {
+        const double along = viscosity.trace() / 3.0, across = (viscosity.sum() - viscosity.trace()) / 6.0;
+        return 0.5 * (along - across);
+    }
+};
+
+/// Imposes a unit strain rate along each axis, and none, with the particles free to move in the box, at the state's contacts.
+/// A contact that has just formed has no viscosity, and the response at that instant no meaning: overlaps count as at least 1e-3 R*.
+/// temperature: K. Contacts that do not diffuse hold their particles together. Throws Error where an axis is not periodic.
+ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature);
+
+}  // namespace kiln::numerics

@@ -1,0 +1,123 @@
+// sintering_methods_test.cpp: order in time, the explicit method against the implicit one, runs taken up from a checkpoint.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "numerics/explicit_sintering.h"
+#include "tests/physics/sintering_cases.h"
+
+using namespace kiln;
+using namespace sintering_cases;
+
+namespace {
+
+constexpr double radius = 50e-9;
+
+State explicitly_sintered(State state, double time, double mass_scaling) {
+    numerics::SinteringSettings wanted = settings();
+    wanted.mass_scaling = mass_scaling;
+    numerics::ExplicitSintering sintering(std::move(state), wanted);
+    while (sintering.time() < time) sintering.advance(time, endless);
+    return sintering.state();
+}
+
+/// Sum of the particles' displacements over their number, over a radius: the momentum that a run without outer forces has gained.
+double drift(const State& before, const State& after) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t row = 0; row < before.particles.size(); ++row) sum += after.particles.position[row] - before.particles.position[row];
+    return sum.norm() / (radius * static_cast<double>(before.particles.size()));
+}
+
+State free_cluster() {
+    State state = random_packing(60, 0.55, 1.0);
+    state.box.periodic = {false, false, false};
+    for (Vec3& position : state.particles.position) position = state.box.wrap(position);
+    return state;
+}
+
+}  // namespace
+
+TEST_CASE("the implicit step is of second order in time") {
+    const State start = sintered(random_packing(300, 0.55, 1.0), 20.0);
+    const double time = start.time + 60.0;
+    const auto density_in = [&](int steps) {
+        numerics::SinteringSettings wanted = settings(0.9);  // the length of the steps is given here, not controlled
+        wanted.solver_tolerance = 1e-8;
+        numerics::ImplicitSintering sintering(start, wanted);
+        for (int step = 1; step <= steps; ++step) {
+            const double until = start.time + (time - start.time) * step / steps;
+            while (sintering.time() < until) REQUIRE(sintering.advance(until, endless).converged);
+        }
+        return sintering.relative_density();
+    };
+    const double exact = density_in(640);
+    const double coarse = std::abs(density_in(10) - exact), fine = std::abs(density_in(80) - exact);
+    CHECK(std::log(coarse / fine) / std::log(8.0) > 1.8);
+    CHECK(fine < 1e-4);
+}
+
+TEST_CASE("explicit: a pair with little inertia closes by the pair law") {
+    const double time = 20.0, start = 2.0 * radius - 4e-9;
+    const Vec3 centre = Vec3::Constant(3e-7);
+    const State pair = state_of({centre, centre + Vec3(start, 0.0, 0.0)}, {radius, radius}, Vec3::Constant(1e-6), false);
+    double before = 1.0;
+    for (const double scaling : {1e17, 1e16, 1e15}) {
+        const double miss = deviation(2.0 * radius - distance(explicitly_sintered(pair, time, scaling), 0, 1), pair_law(4e-9, 0.5 * radius, time));
+        CHECK(miss < 0.2 * before);
+        before = miss;
+    }
+    CHECK(before < 1e-3);
+}
+
+TEST_CASE("explicit and implicit come to the same positions as the mass falls, periodic and free, without drift") {
+    for (const bool periodic : {true, false}) {
+        const State start = periodic ? sintered(random_packing(60, 0.55, 1.0), 20.0) : sintered(free_cluster(), 20.0);
+        const double time = start.time + 10.0;
+        numerics::SinteringSettings wanted = settings(1e-5);
+        numerics::ImplicitSintering sintering(start, wanted);
+        while (sintering.time() < time) sintering.advance(time, endless);
+        const State expected = sintering.state();
+        double before = 1.0;
+        for (const double scaling : {1e19, 1e18, 1e17}) {
+            const State end = explicitly_sintered(start, time, scaling);
+            double apart = 0.0;
+            for (std::size_t row = 0; row < end.particles.size(); ++row) {
+                Vec3 between = end.particles.position[row] - expected.particles.position[row];
+                if (periodic)
+                    for (int axis = 0; axis < 3; ++axis)
+                        between[axis] -= end.box.lengths[axis] * std::round(between[axis] / end.box.lengths[axis]);
+                apart = std::max(apart, between.norm() / radius);
+            }
+            CHECK(apart < 0.5 * before);
+            before = apart;
+            if (!periodic) CHECK(drift(start, end) < 1e-9);
+        }
+        CHECK(before < 5e-3);
+    }
+}
+
+TEST_CASE("a run taken up from its checkpoint goes on as if it had not been broken off, to the last bit") {
+    const State start = random_packing(150, 0.5, 1.0);
+    const auto same = [&](auto& whole, auto& first, auto& second) {
+        for (int step = 0; step < 4; ++step) {
+            whole.advance(40.0, endless);
+            first.advance(40.0, endless);
+        }
+        second.restore(first.checkpoint());
+        for (int step = 0; step < 4; ++step) {
+            const numerics::StepRecord a = whole.advance(40.0, 0.6), b = second.advance(40.0, 0.6);
+            CHECK(a.relative_density == b.relative_density);
+            CHECK(a.newton == b.newton);
+        }
+        CHECK(whole.state().particles.position == second.state().particles.position);
+        CHECK(whole.steps() == second.steps());
+    };
+    numerics::ImplicitSintering whole(start, settings()), first(start, settings()), second(start, settings());
+    same(whole, first, second);
+    numerics::SinteringSettings light = settings();
+    light.mass_scaling = 1e19;
+    numerics::ExplicitSintering explicit_whole(start, light), explicit_first(start, light), explicit_second(start, light);
+    same(explicit_whole, explicit_first, explicit_second);
+    numerics::ImplicitSintering other(random_packing(100, 0.5, 1.0), settings());
+    CHECK_THROWS_WITH_AS(other.restore(first.checkpoint()), doctest::Contains("150 particles"), Error);
+}

@@ -1,0 +1,79 @@
+// checkpoint.cpp: a checkpoint is a dem-state document of its own, with what the run needs under "checkpoint".
+#include "tools/sinter/checkpoint.h"
+
+#include <cstring>
+#include <filesystem>
+
+namespace kiln::sinter {
+
+namespace {
+
+constexpr const char* key = "checkpoint";
+
+void mix(std::uint64_t& hash, const void* data, std::size_t bytes) {
+    const auto* byte = static_cast<const unsigned char*>(data);
+    for (std::size_t k = 0; k < bytes; ++k) hash = (hash ^ byte[k]) * 0x100000001b3ULL;  // FNV-1a, 64 bits: Fowler, Noll & Vo 1991
+}
+
+}  // namespace
+
+std::string fingerprint(const State& state) {
+    std::uint64_t hash = 0xcbf29ce484222325ULL;
+    mix(hash, state.particles.position.data(), state.particles.position.size() * sizeof(Vec3));
+    mix(hash, state.particles.radius.data(), state.particles.radius.size() * sizeof(double));
+    mix(hash, state.box.lengths.data(), sizeof(Vec3));
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+Checkpoint::Checkpoint(const Options& options, Json arguments)
+    : file_(options.checkpoint), resume_(options.resume), interval_(options.checkpoint_every), arguments_(std::move(arguments)) {}
+
+std::optional<Progressed> Checkpoint::read() {
+    if (!wanted() || !resume_ || !std::filesystem::exists(file_)) return std::nullopt;
+    io::Input input({file_});
+    state_ = input.next_state();
+    const auto found = state_->other.find(key);
+    if (found == state_->other.end()) throw Error(file_ + ": is no checkpoint of sinter");
+    const Json& own = *found;
+    try {
+        if (own.at("arguments") != arguments_)
+            throw Error(file_ + ": is of a run with other options, " + own.at("arguments").dump() + "; delete it to begin anew");
+        return Progressed{.document = own.at("document"),
+                          .fingerprint = own.at("fingerprint"),
+                          .arguments = own.at("arguments"),
+                          .output_bytes = own.at("output_bytes"),
+                          .history_bytes = own.at("history_bytes"),
+                          .newton = own.at("newton"),
+                          .conjugate_gradients = own.at("conjugate_gradients"),
+                          .converged = own.at("converged"),
+                          .finished = own.at("finished")};
+    } catch (const Json::exception& error) {
+        throw Error(file_ + ": is no checkpoint of sinter: " + error.what());
+    }
+}
+
+bool Checkpoint::due() const { return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= interval_; }
+
+void Checkpoint::write(State state, Progressed progressed) {
+    state.other[key] = {{"document", progressed.document},
+                        {"fingerprint", progressed.fingerprint},
+                        {"arguments", arguments_},
+                        {"output_bytes", progressed.output_bytes},
+                        {"history_bytes", progressed.history_bytes},
+                        {"newton", progressed.newton},
+                        {"conjugate_gradients", progressed.conjugate_gradients},
+                        {"converged", progressed.converged},
+                        {"finished", progressed.finished}};
+    io::Output output(file_, false);
+    output.write(std::move(state));
+    output.commit();
+    last_ = Clock::now();
+}
+
+void Checkpoint::remove() const {
+    if (wanted()) std::filesystem::remove(file_);
+}
+
+}  // namespace kiln::sinter
