@@ -116,6 +116,7 @@ void Output::create_partial() {
 void Output::open_partial(const Resumption& resumption) {
     partial_ = final_ + ".partial";
     file_ = std::fopen(partial_.c_str(), resumption.take_up ? "r+be" : "wbxe");
+    keep_ = file_ && resumption.take_up;
     if (!file_ && resumption.take_up && errno == ENOENT && resumption.bytes == 0) file_ = std::fopen(partial_.c_str(), "wbxe");
     const std::string partial = file_ ? partial_ : std::exchange(partial_, std::string());
     if (!file_ && errno == EEXIST)
@@ -126,7 +127,6 @@ void Output::open_partial(const Resumption& resumption) {
     if (fstat(fileno(file_), &status) != 0 || static_cast<std::uint64_t>(status.st_size) < resumption.bytes)
         throw Error(partial + ": is shorter than it was at the checkpoint");
     if (flock(fileno(file_), LOCK_EX | LOCK_NB) != 0) throw Error(partial + ": is being written by another run");
-    keep_ = resumption.bytes > 0;
     const auto kept = static_cast<off_t>(resumption.bytes);
     if (ftruncate(fileno(file_), kept) != 0 || fseeko(file_, kept, SEEK_SET) != 0) fail();
 }

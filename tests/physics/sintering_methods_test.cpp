@@ -29,7 +29,7 @@ double drift(const State& before, const State& after) {
 }
 
 State free_cluster() {
-    State state = random_packing(60, 0.55, 1.0);
+    State state = random_packing(30, 0.55, 1.0);
     state.box.periodic = {false, false, false};
     for (Vec3& position : state.particles.position) position = state.box.wrap(position);
     return state;
@@ -38,7 +38,7 @@ State free_cluster() {
 }  // namespace
 
 TEST_CASE("the implicit step is of second order in time") {
-    const State start = sintered(random_packing(300, 0.55, 1.0), 20.0);
+    const State start = sintered(random_packing(120, 0.55, 1.0), 20.0);
     const double time = start.time + 60.0;
     const auto density_in = [&](int steps) {
         numerics::SinteringSettings wanted = settings(0.9);  // the length of the steps is given here, not controlled
@@ -50,29 +50,29 @@ TEST_CASE("the implicit step is of second order in time") {
         }
         return sintering.relative_density();
     };
-    const double exact = density_in(640);
-    const double coarse = std::abs(density_in(10) - exact), fine = std::abs(density_in(80) - exact);
+    const double exact = density_in(256);
+    const double coarse = std::abs(density_in(8) - exact), fine = std::abs(density_in(64) - exact);
     CHECK(std::log(coarse / fine) / std::log(8.0) > 1.8);
     CHECK(fine < 1e-4);
 }
 
 TEST_CASE("explicit: a pair with little inertia closes by the pair law") {
-    const double time = 20.0, start = 2.0 * radius - 4e-9;
+    const double time = 10.0, start = 2.0 * radius - 4e-9;
     const Vec3 centre = Vec3::Constant(3e-7);
     const State pair = state_of({centre, centre + Vec3(start, 0.0, 0.0)}, {radius, radius}, Vec3::Constant(1e-6), false);
     double before = 1.0;
-    for (const double scaling : {1e17, 1e16, 1e15}) {
+    for (const double scaling : {1e19, 1e18, 1e17}) {
         const double miss = deviation(2.0 * radius - distance(explicitly_sintered(pair, time, scaling), 0, 1), pair_law(4e-9, 0.5 * radius, time));
         CHECK(miss < 0.2 * before);
         before = miss;
     }
-    CHECK(before < 1e-3);
+    CHECK(before < 1e-6);
 }
 
 TEST_CASE("explicit and implicit come to the same positions as the mass falls, periodic and free, without drift") {
     for (const bool periodic : {true, false}) {
-        const State start = periodic ? sintered(random_packing(60, 0.55, 1.0), 20.0) : sintered(free_cluster(), 20.0);
-        const double time = start.time + 10.0;
+        const State start = periodic ? sintered(random_packing(30, 0.55, 1.0), 20.0) : sintered(free_cluster(), 20.0);
+        const double time = start.time + 1.0;
         numerics::SinteringSettings wanted = settings(1e-5);
         numerics::ImplicitSintering sintering(start, wanted);
         while (sintering.time() < time) sintering.advance(time, endless);
@@ -88,11 +88,11 @@ TEST_CASE("explicit and implicit come to the same positions as the mass falls, p
                         between[axis] -= end.box.lengths[axis] * std::round(between[axis] / end.box.lengths[axis]);
                 apart = std::max(apart, between.norm() / radius);
             }
-            CHECK(apart < 0.5 * before);
+            CHECK(apart < 0.2 * before);
             before = apart;
             if (!periodic) CHECK(drift(start, end) < 1e-9);
         }
-        CHECK(before < 5e-3);
+        CHECK(before < 1e-4);
     }
 }
 
