@@ -75,11 +75,6 @@ void keep_freed_memory() {
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
-void return_freed_memory() {
-    mallopt(M_MMAP_THRESHOLD, 1 << 20);
-    mallopt(M_TRIM_THRESHOLD, 1 << 24);
-}
-
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body) {
     watch_signals();
     keep_freed_memory();

@@ -31,10 +31,6 @@ struct Common {
 /// it, and states come one after the other. run() calls it.
 void keep_freed_memory();
 
-/// Gives large blocks back as they are freed. For long runs whose arrays grow from step to step and would never fit into the holes that
-/// the step before has left.
-void return_freed_memory();
-
 /// Runs a tool: body adds its options to an app, parses, works and returns its status. This function is the only catch: it turns
 /// exceptions into one sentence "tool: …" on stderr and an exit status.
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body);

@@ -90,7 +90,8 @@ LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preco
     };
 
     const double start = advance(0.0);
-    const double wanted = std::max(goal.tolerance * goal.tolerance * start, goal.enough);
+    const double relative = goal.scale > 0.0 ? std::clamp(std::sqrt(start / goal.scale), goal.tightest, goal.loosest) : goal.tightest;
+    const double wanted = std::max(relative * relative * start, goal.enough);
     double product = start, ratio = 0.0;
     LinearSolve report{.start = start};
     while (product > wanted && report.iterations < goal.most_iterations) {

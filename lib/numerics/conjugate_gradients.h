@@ -12,14 +12,16 @@ struct LinearSolve {
     double start = 0.0;     // square of that norm of the right-hand side
 };
 
-/// When a linear solve ends.
+/// When a linear solve ends: its error, by the preconditioned residual, is to be `tightest` times that at the start, or, if that is
+/// more, the start's own error relative to the scale but no more than `loosest`.
 struct LinearGoal {
-    double tolerance = 1e-8;    // norm of the preconditioned residual over that of the right-hand side
-    double enough = 0.0;        // square of that norm itself, an estimate of the square of the error in the energy norm
+    double loosest = 1e-8, tightest = 1e-8;
+    double scale = 0.0;         // square of the solution's norm in the energy; 0: the first rule alone
+    double enough = 0.0;        // square of an error that is good enough anyhow
     int most_iterations = 5000;
 };
 
-/// Solves K x = b from x = 0 until one of the goals is met.
+/// Solves K x = b from x = 0 until the goal is met.
 ///
 /// A singular K (particles without contacts, clusters that hang on nothing) is allowed as long as b does no work on its null space.
 /// allowed: projector onto the strains that the box may take. Work vectors are kept between calls.

@@ -13,7 +13,8 @@ namespace kiln::numerics {
 namespace {
 
 constexpr double largest_closing = 1.0;     // of the mean radius, of any gap in a step
-constexpr double first_reach = 0.03;        // of the mean radius, that the first step looks beyond touch
+constexpr double least_reach = 0.01;        // of the mean radius, that candidates for touch may be apart
+constexpr double guess_margin = 1.3;        // of the closing that is guessed, that makes a candidate
 constexpr double sticking_gap = 1e-6;       // of the reduced radius, between rigid particles that touch
 constexpr double largest_log_step = 0.05;   // of the density
 constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
@@ -22,8 +23,7 @@ constexpr double typical_log_range = 0.4;   // of a whole run, over which the to
 constexpr std::size_t most_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
-constexpr double landing_solver = 0.05;     // tolerance of the solver there, over that of other steps
-constexpr double landing_accuracy = 1e-7;   // relative, of a wanted density
+constexpr double landing_closeness = 2e-3;  // of a step's change of density, within which scaling its motion is exact enough
 constexpr int most_landings = 40;           // attempts to end a step at a wanted density
 constexpr int most_rejections = 20;         // of one step
 
@@ -58,30 +58,63 @@ PairStep ImplicitSintering::pair_step(const Pair& pair, const std::vector<double
     return step;
 }
 
-void ImplicitSintering::gather_candidates(const std::vector<Pair>& pairs, double closing, const std::vector<double>& diffusion) {
+double ImplicitSintering::end_overlap(const Pair& pair, const Motion& motion) const {
+    const auto [first, second] = packing_.radii(pair);
+    const Vec3 vector = packing_.vector(pair);
+    const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pair.i)]);
+    const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pair.j)]);
+    return first + second - (vector + b - a + motion.strain.cwiseProduct(vector)).norm();
+}
+
+void ImplicitSintering::choose_candidates(const Motion& guess, const Motion& other) {
+    const std::vector<Pair>& pairs = packing_.pairs();
+    candidates_.among.resize(pairs.size());
+    const double radius = packing_.mean_radius(), reach = least_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < pairs.size(); ++row) {
+        const auto [first, second] = packing_.radii(pairs[row]);
+        const double overlap = first + second - packing_.vector(pairs[row]).norm();
+        const double closing = std::max(end_overlap(pairs[row], guess), end_overlap(pairs[row], other)) - overlap;
+        candidates_.among[row] = overlap + reach + guess_margin * std::max(0.0, closing) > 0.0;
+    }
+}
+
+void ImplicitSintering::gather_candidates(const std::vector<double>& diffusion) {
     // Forces in a unit that makes stiffness a plain number near one, whatever the sizes, times and temperatures.
     const double radius = packing_.mean_radius();
     unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
             (physics::normal_viscosity_factor(settings_.constants, 0.5 * radius) * radius * radius);
-    std::vector<PairStep> steps(pairs.size());
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < pairs.size(); ++row) steps[row] = pair_step(pairs[row], diffusion);
+    const std::vector<Pair>& pairs = packing_.pairs();
     candidates_.pairs.clear();
-    candidates_.steps.clear();
     candidates_.touching.clear();
     candidates_.sticking.clear();
+    candidates_.chosen.clear();
     for (std::size_t row = 0; row < pairs.size(); ++row) {
-        const PairStep& step = steps[row];
-        if (step.overlap <= -closing) continue;
-        const bool sticks = !(step.cubic > 0.0) && step.overlap > -sticking_gap * step.reduced_radius;
-        if (step.overlap >= 0.0 || sticks) candidates_.touching.push_back(pairs[row]);
-        if (sticks) {
-            candidates_.sticking.push_back(pairs[row]);
-        } else {
-            candidates_.pairs.push_back(pairs[row]);
-            candidates_.steps.push_back(step);
-        }
+        if (!candidates_.among[row]) continue;
+        candidates_.chosen.push_back(pairs[row]);
+        const auto [first, second] = packing_.radii(pairs[row]);
+        const std::vector<std::int32_t>& material = packing_.particles().material;
+        const bool rigid = kinetics_.any_rigid() && kinetics_.rigid(kinetics_.row(material[static_cast<std::size_t>(pairs[row].i)],
+                                                                                  material[static_cast<std::size_t>(pairs[row].j)]));
+        const double overlap = first + second - packing_.vector(pairs[row]).norm();
+        const bool sticks = rigid && overlap > -sticking_gap * physics::reduced_radius(first, second);
+        if (overlap >= 0.0 || sticks) candidates_.touching.push_back(pairs[row]);
+        (sticks ? candidates_.sticking : candidates_.pairs).push_back(pairs[row]);
     }
+    candidates_.steps.resize(candidates_.pairs.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < candidates_.pairs.size(); ++row) candidates_.steps[row] = pair_step(candidates_.pairs[row], diffusion);
+}
+
+bool ImplicitSintering::complete(const Motion& motion) const {
+    // Pairs that the solve has left out, of a list that may have been made anew since.
+    const std::vector<Pair>& pairs = packing_.pairs();
+    std::size_t touching = 0, known = 0;
+#pragma omp parallel for schedule(static) reduction(+ : touching)
+    for (std::size_t row = 0; row < pairs.size(); ++row) touching += end_overlap(pairs[row], motion) > 0.0;
+#pragma omp parallel for schedule(static) reduction(+ : known)
+    for (std::size_t row = 0; row < candidates_.chosen.size(); ++row) known += end_overlap(candidates_.chosen[row], motion) > 0.0;
+    return touching == known;
 }
 
 void ImplicitSintering::turn_to_nodes(const RigidClusters& clusters) {
@@ -161,62 +194,86 @@ Motion ImplicitSintering::guess_from(const Motion& motion, double factor) const 
     return guess;
 }
 
-ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double until, const Motion& guess, bool tight) {
-    const double radius = packing_.mean_radius();
+Motion ImplicitSintering::solve(const Motion* first, const Motion& guess, const std::vector<double>& diffusion, StepReport& report) {
+    choose_candidates(guess, first ? *first : guess);
+    gather_candidates(diffusion);
+    const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking);
+    turn_to_nodes(clusters);
+    StepSettings settings;
+    settings.allowed_strain = allowed_strain(clusters.locked());
+    settings.pressure = unit_ * settings_.pressure;
+    settings.solver_tolerance = settings_.solver_tolerance;
+    SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs, settings);
+    Motion motion = clusters.nodes(guess);
+    project(motion, settings.allowed_strain);
+    report = first ? solver.second_order(candidates_.steps, clusters.nodes(*first), motion) : solver.first_order(candidates_.steps, motion);
+    for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
+        report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / unit_ : 0.0;
+    newton_ += report.newton;
+    conjugate_gradients_ += report.conjugate_gradients;
+    return clusters.particles(motion, packing_.particles().position);
+}
+
+ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double until, const Motion& guess) {
+    const double radius = packing_.mean_radius(), longest = last_duration_ > 0.0 ? std::max(1.0, duration / last_duration_) : 1.0;
+    packing_.pairs_within(std::min(1.2 * last_closing_ * longest, largest_closing * radius));
     ++attempts_;
-    double closing = last_duration_ > 0.0 ? 1.2 * last_closing_ * std::max(1.0, duration / last_duration_) : first_reach * radius;
-    closing = std::min(closing, largest_closing * radius);
     const std::vector<double> diffusion = kinetics_.diffusion_over(packing_.time(), until);
-    for (;;) {
-        gather_candidates(packing_.pairs_within(closing), closing, diffusion);
-        const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking);
-        turn_to_nodes(clusters);
-        StepSettings settings;
-        settings.allowed_strain = allowed_strain(clusters.locked());
-        settings.pressure = unit_ * settings_.pressure;
-        settings.solver_tolerance = settings_.solver_tolerance * (tight ? landing_solver : 1.0);
-        settings.second_order = settings_.second_order;
-        SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs, settings);
-        Motion motion = clusters.nodes(guess), first_order;
-        project(motion, settings.allowed_strain);
-        Trial trial;
-        trial.until = until;
-        trial.report = solver.solve(candidates_.steps, motion, first_order);
-        for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
-            trial.report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / unit_ : 0.0;
-        trial.motion = clusters.particles(motion, packing_.particles().position);
-        trial.first_order = clusters.particles(first_order, packing_.particles().position);
-        newton_ += trial.report.newton;
-        conjugate_gradients_ += trial.report.conjugate_gradients;
-        trial.closing = packing_.closing_bound(trial.motion);
-        trial.leapt = trial.closing > largest_closing * radius;  // no list of pairs is made for such a leap: the step is too long
-        if (!trial.leapt && trial.closing > closing) {           // pairs that were left out might have come to touch
-            closing = 1.2 * trial.closing;
-            continue;
-        }
-        trial.log_density = packing_.log_density_change(trial.motion);
-        trial.first_log_density = packing_.log_density_change(trial.first_order);
-        return trial;
-    }
+    Trial trial;
+    trial.until = until;
+    trial.motion = guess;
+    const auto solve_all = [&](const Motion* first) {  // until no pair that comes to touch was left out
+        do {
+            StepReport report;
+            trial.motion = solve(first, trial.motion, diffusion, report);
+            trial.report.converged = trial.report.converged && report.converged;
+            trial.report.stress = report.stress;
+            trial.closing = packing_.closing_bound(trial.motion);
+            trial.leapt = trial.closing > largest_closing * radius;  // no list of pairs is made for such a leap: the step is too long
+            if (!trial.leapt) packing_.pairs_within(trial.closing);
+        } while (!trial.leapt && !complete(trial.motion));
+    };
+    solve_all(nullptr);
+    trial.first_order = trial.motion;
+    if (settings_.second_order && !trial.leapt) solve_all(&trial.first_order);
+    if (trial.leapt) return trial;
+    trial.log_density = packing_.log_density_change(trial.motion);
+    trial.first_log_density = packing_.log_density_change(trial.first_order);
+    return trial;
 }
 
 ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& duration, const Trial& beyond) {
-    // The density is a smooth function of the step's length: secants, kept inside the bracket.
+    // The density is a smooth function of the step's length: first a parabola through the last step's rate, then secants inside the
+    // bracket. What is left in the end is taken by scaling the motion, so that the density is exact.
     double low = 0.0, high = duration;
-    double before = 0.0, before_miss = -log_change, here = duration, miss = beyond.log_density - log_change;
+    double before = duration, before_change = beyond.log_density, here = parabola(log_change, duration, beyond.log_density);
     Trial trial = beyond;
     for (int iteration = 0; iteration < most_landings; ++iteration) {
-        const double secant = here - miss * (here - before) / (miss - before_miss);
-        before = here;
-        before_miss = miss;
-        here = secant > low && secant < high ? secant : 0.5 * (low + high);
-        trial = attempt(here, kinetics_.after(packing_.time(), here), guess_from(trial.motion, here / before), true);
-        miss = trial.log_density - log_change;
-        if (std::abs(miss) <= landing_accuracy) break;
+        trial = attempt(here, kinetics_.after(packing_.time(), here), guess_from(trial.motion, log_change / trial.log_density));
+        const double miss = trial.log_density - log_change, rate = (trial.log_density - before_change) / (here - before);
+        const double next = here - miss / rate;
         (miss > 0.0 ? high : low) = here;
+        before = std::exchange(here, next > low && next < high ? next : 0.5 * (low + high));
+        before_change = trial.log_density;
+        if (std::abs(miss) <= landing_closeness * log_change) break;
+    }
+    for (int pass = 0; pass < 3; ++pass) {  // the logarithm of the density is nearly linear in the motion
+        trial.motion = guess_from(trial.motion, log_change / trial.log_density);
+        trial.log_density = packing_.log_density_change(trial.motion);
     }
     duration = here;
+    trial.until = kinetics_.after(packing_.time(), here);
     return trial;
+}
+
+double ImplicitSintering::parabola(double log_change, double duration, double log_density) const {
+    // Rates of the last step and this one, each in the middle of its step, give the rate at the start and its slope.
+    const double rate = log_density / duration;
+    const double slope = last_duration_ > 0.0 ? (rate - last_rate_) / (0.5 * (duration + last_duration_)) : 0.0;
+    const double start = rate - 0.5 * duration * slope;
+    const double root = start * start + 2.0 * slope * log_change;
+    const double guess = root > 0.0 ? 2.0 * log_change / (start + std::sqrt(root)) : 0.0;
+    return guess > 0.0 && guess < duration ? guess : duration * log_change / log_density;
 }
 
 ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time) {
@@ -230,7 +287,7 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
     Trial trial;
     double difference = 0.0;
     for (int rejected = 0;; ++rejected) {
-        trial = attempt(duration, until, guess, false);
+        trial = attempt(duration, until, guess);
         difference = std::abs(trial.log_density - trial.first_log_density);
         if (!trial.leapt && difference <= 2.0 * wanted_error && std::abs(trial.log_density) <= largest_log_step &&
             trial.report.converged)

@@ -31,15 +31,21 @@ class ImplicitSintering : public SinteringMethod {
     struct Candidates {
         std::vector<Pair> pairs;
         std::vector<PairStep> steps;
-        std::vector<Pair> touching, sticking;  // of particles
+        std::vector<Pair> chosen, touching, sticking;  // of particles: all, those that touch, those that stick
+        std::vector<std::uint8_t> among;               // of all listed pairs: is it chosen
     };
     PairStep pair_step(const Pair& pair, const std::vector<double>& diffusion) const;
-    void gather_candidates(const std::vector<Pair>& pairs, double closing, const std::vector<double>& diffusion);
+    double end_overlap(const Pair& pair, const Motion& motion) const;
+    void choose_candidates(const Motion& guess, const Motion& other);
+    void gather_candidates(const std::vector<double>& diffusion);
+    bool complete(const Motion& motion) const;
     void turn_to_nodes(const RigidClusters& clusters);
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
-    Trial attempt(double duration, double until, const Motion& guess, bool tight);
+    Motion solve(const Motion* first, const Motion& guess, const std::vector<double>& diffusion, StepReport& report);
+    Trial attempt(double duration, double until, const Motion& guess);
     Trial accepted_attempt(double& duration, double latest_time);
     Trial land_on(double log_change, double& duration, const Trial& beyond);
+    double parabola(double log_change, double duration, double log_density) const;
     Motion guess_from(const Motion& motion, double factor) const;
     double first_duration();
     StepRecord finish(const Trial& trial, double duration);

@@ -18,11 +18,13 @@ constexpr double least_tangent = 0.1;      // of the tangent at a pair's own end
 constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
 constexpr double tightest_linear = 1e-3;
 constexpr double predictor_tolerance = 10.0;  // of the first-order solution, over that of the step
-constexpr double corrector_linear = 0.05;  // tolerance of the first linear solve that starts from the first-order solution
+constexpr int most_factorisations = 2;     // in one minimisation; later the tangents hardly change
 constexpr double tolerance_share = 0.3;    // of the tolerance, that is left to linear solves
 constexpr double limit_stiffness = 10.0;   // of the springs at closing limits, over the mean tangent of the contacts
 constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a closing limit is met
 constexpr int most_limit_passes = 60;
+
+double square(double x) { return x * x; }
 
 /// Share of the step in which a pair touches, by linear change of the overlap.
 double touching_share(double start, double end) {
@@ -71,7 +73,6 @@ void SinterStep::start_geometry(const std::vector<PairStep>& step) {
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < step.size(); ++row) {
         const PairStep& pair = step[row];
-        levers_[row] = pair.lever;
         normals_[row] = pair.vector / pair.distance;
         share_[row] = pair.overlap >= 0.0 ? 1.0 : 0.0;
         goal_[row] = alone(pair, share_[row]);
@@ -101,6 +102,7 @@ void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Moti
 
 /// Brings what does not change between Newton's iterations into the order of the network.
 void SinterStep::take_geometry(const std::vector<PairStep>& step) {
+    for (std::size_t row = 0; row < step.size(); ++row) levers_[row] = step[row].lever;
     network_.for_chunks([&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network_.chunks()[index];
         for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
@@ -179,16 +181,16 @@ double SinterStep::line_search(const std::vector<PairStep>& step, double slope, 
     return length;
 }
 
-bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion,
-                        StepReport& report) {
+bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report) {
     forces(step, motion, unbalanced_, true);
     for (int iteration = 0; iteration < most_newton; ++iteration) {
-        preconditioner_.factorise(network_, levers_);
+        if (iteration < most_factorisations) preconditioner_.factorise(network_, levers_);
         unbalanced_.strain *= -1.0;
         for (double& component : unbalanced_.displacement) component = -component;
-        const double enough = tolerance_share * tolerance * tolerance_share * tolerance * work_;
-        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_,
-                                                 {linear_tolerance, enough, most_conjugate_gradients});
+        // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
+        const LinearGoal goal{.loosest = loosest_linear, .tightest = tightest_linear, .scale = work_,
+                              .enough = square(tolerance_share * tolerance) * work_, .most_iterations = most_conjugate_gradients};
+        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, goal);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
         const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction
@@ -199,21 +201,19 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, dou
         const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
         const double now = length < 1.0 ? error : (linear.residual + error) * error;
         if (now < tolerance) return true;
-        linear_tolerance = std::clamp(now, tightest_linear, loosest_linear);
     }
     return false;
 }
 
-bool SinterStep::minimise(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion,
-                          StepReport& report) {
-    bool converged = newton(step, tolerance, linear_tolerance, motion, report);
+bool SinterStep::minimise(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report) {
+    bool converged = newton(step, tolerance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -normals_[row].dot(relative(row, motion, levers_[row])); },
             [&](std::size_t row) { return limit_accuracy * step[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == most_limit_passes) return false;
-        converged = newton(step, tolerance, linear_tolerance, motion, report);
+        converged = newton(step, tolerance, motion, report);
     }
     return converged;
 }
@@ -237,18 +237,21 @@ void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion)
     }
 }
 
-StepReport SinterStep::solve(const std::vector<PairStep>& step, Motion& motion, Motion& first_order) {
+StepReport SinterStep::first_order(const std::vector<PairStep>& step, Motion& motion) {
     StepReport report;
     start_geometry(step);
-    report.converged = minimise(step, predictor_tolerance * settings_.solver_tolerance, loosest_linear, motion, report);
+    report.converged = minimise(step, predictor_tolerance * settings_.solver_tolerance, motion, report);
     remove_drift(step, motion);
-    first_order = motion;
-    if (settings_.second_order) {
-        midpoint_geometry(step, motion);
-        report.converged = minimise(step, settings_.solver_tolerance, corrector_linear, motion, report) && report.converged;
-        remove_drift(step, motion);
-    }
-    const Vec3 stretch = settings_.second_order ? Vec3(Vec3::Ones() + 0.5 * first_order.strain) : Vec3::Ones();
+    report.stress = strain_force_ / box_.volume();
+    return report;
+}
+
+StepReport SinterStep::second_order(const std::vector<PairStep>& step, const Motion& first, Motion& motion) {
+    StepReport report;
+    const Vec3 stretch = Vec3::Ones() + 0.5 * first.strain;
+    midpoint_geometry(step, first);
+    report.converged = minimise(step, settings_.solver_tolerance, motion, report);
+    remove_drift(step, motion);
     report.stress = strain_force_.cwiseProduct(stretch) / (box_.volume() * stretch.prod());
     return report;
 }

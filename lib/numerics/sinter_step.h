@@ -35,7 +35,6 @@ struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double solver_tolerance = 1e-3;                   // relative error of a step's motion in the energy norm
-    bool second_order = true;
 };
 
 struct StepReport {
@@ -50,9 +49,11 @@ class SinterStep {
    public:
     SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings);
 
-    /// Motion over the step of the given pair data (a row a pair), from a guess of it; `first_order` receives that of the first-order
-    /// solution, on the way.
-    StepReport solve(const std::vector<PairStep>& step, Motion& motion, Motion& first_order);
+    /// Motion over the step with the geometry at its start, from a guess of it: first order in the length of the step.
+    StepReport first_order(const std::vector<PairStep>& step, Motion& motion);
+
+    /// Motion with the geometry half way through `first`, the motion of first order, from a guess of it: second order.
+    StepReport second_order(const std::vector<PairStep>& step, const Motion& first, Motion& motion);
 
    private:
     /// Relative motion of pair `row` under a motion, m.
@@ -61,8 +62,8 @@ class SinterStep {
     void midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion);
     void take_geometry(const std::vector<PairStep>& step);
     void start_limits(const std::vector<PairStep>& step);
-    bool minimise(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion, StepReport& report);
-    bool newton(const std::vector<PairStep>& step, double tolerance, double linear_tolerance, Motion& motion, StepReport& report);
+    bool minimise(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report);
+    bool newton(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report);
     double line_search(const std::vector<PairStep>& step, double slope, Motion& motion);
     void forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant);
     void remove_drift(const std::vector<PairStep>& step, Motion& motion) const;

@@ -17,8 +17,8 @@ struct SinteringSettings {
     Faces faces = Faces::as_given;
     std::array<bool, 3> fixed{false, false, false};  // axes along which the box keeps its length
     Vec3 pressure = Vec3::Zero();                   // Pa, compressive, along the periodic axes
-    double tolerance = 1e-3;         // relative error of the density over the whole run that the steps aim at
-    double solver_tolerance = 1e-3;  // relative error of a step's motion in the energy norm
+    double tolerance = 3e-4;         // relative error of the density over the whole run that the steps aim at
+    double solver_tolerance = 3e-3;  // relative error of a step's motion in the energy norm
     bool second_order = true;        // of the implicit step
     double mass_scaling = 1e20;      // of the explicit method: inertial over real mass
 };

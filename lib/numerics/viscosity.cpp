@@ -13,6 +13,7 @@ namespace kiln::numerics {
 namespace {
 
 constexpr double accuracy = 1e-7;       // of the solves, energy norm
+constexpr int most_iterations = 20000;
 constexpr double least_overlap = 1e-3;  // of the reduced radius, see viscosity.h
 constexpr int refinements = 2;  // the solver's stiffness is in single precision
 
@@ -102,7 +103,7 @@ ViscousResponse viscous_response(const State& state, const physics::ContactConst
                        contacts.tangential[row] / contacts.unit * du;
             });
         };
-        LinearGoal goal{.tolerance = accuracy};
+        LinearGoal goal{.loosest = accuracy, .tightest = accuracy, .most_iterations = most_iterations};
         for (int pass = 0; pass <= refinements; ++pass) {
             unbalanced();
             for (double& component : forces.displacement) component = -component;

@@ -19,7 +19,6 @@ int sinter_states(int argc, char** argv) {
     options.add_to(app);
     cli::parse(app, argc, argv, common);
     options.check(common.output);
-    cli::return_freed_memory();
 
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
     sinter::Checkpoint checkpoint(options, entry(Json::object())["arguments"]);

@@ -20,7 +20,7 @@ struct Options {
     std::vector<double> pressure;   // Pa, one or three
     std::string method = "implicit";
     double mass_scaling = 1e20;
-    double tolerance = 1e-3;
+    double tolerance = 3e-4;
     int order = 2;
     physics::ContactConstants constants;
     std::string report;             // what else to say of each state
