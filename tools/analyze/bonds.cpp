@@ -59,25 +59,15 @@ Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
 }  // namespace
 
 int bonds(int argc, char** argv) {
-    cli::Common common;
-    bool table = false;
     std::size_t bins = 20;
     CLI::App app{"Number, mean diameter and mean length of the bonds of every state, and the distribution of their radii.",
                  "analyze bonds"};
     app.footer(footer);
     app.add_option("--bins", bins, "number of bins of the histogram")->check(CLI::Range(1, 1000000))->capture_default_str();
-    add_table(app, table);
-    common.add_to(app);
-    cli::parse(app, argc, argv, common);
-
-    io::Input input(common.files);
-    Report report(common, table, columns);
-    while (auto document = input.next()) {
-        const std::string place = document->place;
-        report.add(bonds_of(io::state_from(std::move(*document)), place, bins));
-    }
-    report.finish();
-    return cli::done;
+    return report_each(app, argc, argv, columns, [&bins](io::Document document) {
+        const std::string place = document.place;
+        return bonds_of(io::state_from(std::move(document)), place, bins);
+    });
 }
 
 }  // namespace kiln::analyze

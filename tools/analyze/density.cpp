@@ -46,19 +46,9 @@ Json density_of(const State& state) {
 }  // namespace
 
 int density(int argc, char** argv) {
-    cli::Common common;
-    bool table = false;
     CLI::App app{"Density, coordination number, overlaps and clusters of every state.", "analyze density"};
     app.footer(footer);
-    add_table(app, table);
-    common.add_to(app);
-    cli::parse(app, argc, argv, common);
-
-    io::Input input(common.files);
-    Report report(common, table, columns);
-    while (const auto state = input.next_state()) report.add(density_of(*state));
-    report.finish();
-    return cli::done;
+    return report_each(app, argc, argv, columns, [](io::Document document) { return density_of(io::state_from(std::move(document))); });
 }
 
 }  // namespace kiln::analyze

@@ -69,22 +69,12 @@ Json other_info(const io::Document& document) {
 }  // namespace
 
 int info(int argc, char** argv) {
-    cli::Common common;
-    bool table = false;
     CLI::App app{"Says what each document of a stream holds.", "analyze info"};
     app.footer(footer);
-    add_table(app, table);
-    common.add_to(app);
-    cli::parse(app, argc, argv, common);
-
-    io::Input input(common.files);
-    Report report(common, table, columns);
-    while (auto document = input.next()) {
-        const bool is_state = document->header.value("format", Json("dem-state")) == "dem-state";
-        report.add(is_state ? state_info(std::move(*document)) : other_info(*document));
-    }
-    report.finish();
-    return cli::done;
+    return report_each(app, argc, argv, columns, [](io::Document document) {
+        const bool is_state = document.header.value("format", Json("dem-state")) == "dem-state";
+        return is_state ? state_info(std::move(document)) : other_info(document);
+    });
 }
 
 }  // namespace kiln::analyze

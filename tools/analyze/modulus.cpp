@@ -87,8 +87,6 @@ Json modulus_of(const io::Document& document, const Window& window) {
 }  // namespace
 
 int modulus(int argc, char** argv) {
-    cli::Common common;
-    bool table = false;
     Window window;
     CLI::App app{"Young's modulus from the force and deflection of three-point bending tests.", "analyze modulus"};
     app.footer(footer);
@@ -96,19 +94,11 @@ int modulus(int argc, char** argv) {
            "--window", [&window](const std::string& text) { window = parse_window(text); },
            "force window of the unloading, UPPER:LOWER as shares of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
         ->default_str("5/6:1/3");
-    add_table(app, table);
-    common.add_to(app);
-    cli::parse(app, argc, argv, common);
-
-    io::Input input(common.files);
-    Report report(common, table, columns);
-    while (const auto document = input.next()) {
-        Json result = modulus_of(*document, window);
+    return report_each(app, argc, argv, columns, [&](const io::Document& document) {
+        Json result = modulus_of(document, window);
         if (result.contains("history")) result["history"].push_back(cli::history_entry("analyze modulus", app, Json::object()));
-        report.add(std::move(result));
-    }
-    report.finish();
-    return cli::done;
+        return result;
+    });
 }
 
 }  // namespace kiln::analyze

@@ -66,6 +66,20 @@ void Report::finish() {
     output_.commit();
 }
 
+int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns, const std::function<Json(io::Document)>& convert) {
+    cli::Common common;
+    bool table = false;
+    add_table(app, table);
+    common.add_to(app);
+    cli::parse(app, argc, argv, common);
+
+    io::Input input(common.files);
+    Report report(common, table, columns);
+    while (auto document = input.next()) report.add(convert(std::move(*document)));
+    report.finish();
+    return cli::done;
+}
+
 std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows) {
     std::vector<std::string> lines(rows.size() + 1);
     for (const Column& column : columns) {

@@ -1,6 +1,7 @@
 // report.h: what the subcommands write, JSON documents a line each or an aligned table for people.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,10 @@ class Report {
     std::vector<Column> columns_;
     std::vector<Json> rows_;
 };
+
+/// What a subcommand does that makes one result of each document: adds --table and the common options to the app, parses, and reports
+/// convert(document) for every document of the input. convert throws Error for a document that it cannot take.
+int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns, const std::function<Json(io::Document)>& convert);
 
 /// The rows as text: headings with units, numbers with five digits, columns flush right, "-" for what a row does not have.
 std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows);
