@@ -1,9 +1,12 @@
 // bonds.cpp: number and mean size of the bonds of states, and the distribution of their radii.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
+#include "tools/analyze/histogram.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/structure.h"
 
@@ -14,6 +17,9 @@ namespace {
 constexpr const char* footer =
     "Keys: relative_density, particles, count, mean_diameter (m), mean_length (m), bond_volume_fraction (share of the solid "
     "that is in bonds), histogram of the radii {edges (m), counts}.\n"
+    "Where the bonds carry forces, as in the states that bend writes: normal_force (N), normal_stress (force over section, Pa) and "
+    "fibre_stress (with the moment as if it only bent the bond, Pa) {mean, standard_deviation, minimum, maximum}, tension positive; "
+    "compressed_fraction (share of bonds), force_histogram.\n"
     "Examples:\n"
     "  analyze bonds --table bonded.kiln\n"
     "  bondify sintered.kiln | analyze bonds --bins 50 | jq .histogram";
@@ -24,14 +30,34 @@ const std::vector<Column> columns{{"relative_density", "relative density", ""}, 
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-/// Bins of equal width from zero to the largest radius, which belongs to the last one.
-Json histogram_of(const std::vector<double>& radius, std::size_t bins) {
-    const double width = radius.empty() ? 0.0 : std::ranges::max(radius) / static_cast<double>(bins);
-    std::vector<double> edges(bins + 1);
-    for (std::size_t edge = 0; edge <= bins; ++edge) edges[edge] = static_cast<double>(edge) * width;
-    std::vector<std::size_t> counts(bins);
-    for (const double r : radius) ++counts[width > 0.0 ? std::min(static_cast<std::size_t>(r / width), bins - 1) : 0];
-    return {{"edges", edges}, {"counts", counts}};
+/// The column of that name as numbers; nothing unless it is f8 with so many values a row.
+const std::vector<double>* column(const Bonds& bonds, const std::string& name, std::size_t row_length) {
+    const auto found = std::ranges::find(bonds.other, name, &NamedArray::name);
+    if (found == bonds.other.end() || found->array.row_length() != row_length) return nullptr;
+    return std::get_if<std::vector<double>>(&found->array.data);
+}
+
+/// Force along each bond, and the greatest stress in its section, as far as the bonds carry forces and moments.
+void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
+    const std::vector<double>* force = column(bonds, "normal_force", 1);
+    if (!force || force->empty()) return;
+    const std::vector<double>* moment = column(bonds, "moment", 3);
+    std::vector<double> stress, fibre;
+    for (std::size_t bond = 0; bond < bonds.size(); ++bond) {
+        const double radius = bonds.radius[bond], area = std::numbers::pi * radius * radius;
+        if (area == 0.0) continue;
+        stress.push_back((*force)[bond] / area);
+        if (!moment) continue;
+        // Outer fibre of a round beam, M R/I with I = A R^2/4 (D. Potyondy & P. Cundall, Int. J. Rock Mech. 41 (2004) 1329, eq. 17).
+        const double* turn = moment->data() + 3 * bond;
+        fibre.push_back(stress.back() + 4.0 * std::hypot(turn[0], turn[1], turn[2]) / (area * radius));
+    }
+    result["normal_force"] = spread_of(*force);
+    result["compressed_fraction"] = static_cast<double>(std::ranges::count_if(*force, [](double f) { return f < 0.0; })) /
+                                    static_cast<double>(force->size());
+    result["normal_stress"] = spread_of(stress);
+    if (moment) result["fibre_stress"] = spread_of(fibre);
+    result["force_histogram"] = histogram_of(*force, bins, std::ranges::min(*force));
 }
 
 Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
@@ -44,16 +70,18 @@ Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
     const double in_bonds = sum(bonds.volume);
     Json diameter = mean(bonds.radius);
     if (!diameter.is_null()) diameter = 2.0 * diameter.get<double>();
-    return {{"format", "dem-bonds"},
-            {"version", io::format_version},
-            {"time", state.time},
-            {"relative_density", density.value ? Json(*density.value) : Json()},
-            {"particles", state.particles.size()},
-            {"count", bonds.size()},
-            {"mean_diameter", diameter},
-            {"mean_length", mean(bonds.length)},
-            {"bond_volume_fraction", bonds.size() == 0 ? 0.0 : in_bonds / (in_bonds + particle_volume(state.particles))},
-            {"histogram", histogram_of(bonds.radius, bins)}};
+    Json result{{"format", "dem-bonds"},
+                {"version", io::format_version},
+                {"time", state.time},
+                {"relative_density", density.value ? Json(*density.value) : Json()},
+                {"particles", state.particles.size()},
+                {"count", bonds.size()},
+                {"mean_diameter", diameter},
+                {"mean_length", mean(bonds.length)},
+                {"bond_volume_fraction", bonds.size() == 0 ? 0.0 : in_bonds / (in_bonds + particle_volume(state.particles))},
+                {"histogram", histogram_of(bonds.radius, bins, 0.0)}};
+    add_loads(result, bonds, bins);
+    return result;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "cli/units.h"
 #include "tools/analyze/analyze.h"
+#include "tools/analyze/interpolate.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/structure.h"
 
@@ -14,17 +15,21 @@ namespace {
 
 constexpr const char* footer =
     "The stream is read once; for every wanted value the nearest state (of equally near ones the first) is written, in the order "
-    "asked.\n"
+    "asked. With --interpolate it is a state between the first two neighbours in the stream that have the wanted value between them; they "
+    "must hold the same particles, by id. Time, box, positions and radii are linear in between; a density is met exactly in a "
+    "periodic box.\n"
     "Examples:\n"
     "  analyze select --density 0.67,0.79 history.kiln | bondify\n"
-    "  sinter green.kiln --every 10s | analyze select --time 200s -o chosen.kiln";
+    "  sinter green.kiln --every 10s | analyze select --time 200s -o chosen.kiln\n"
+    "  analyze select --interpolate --density 0.7,0.75 trajectory.kiln | bondify";
 
 constexpr double far_in_density = 0.01;  // above this difference a warning is due
 
 struct Options {
     std::vector<double> density;
-    std::vector<double> time;        // s
-    std::vector<std::size_t> index;  // from 1
+    std::vector<double> time;     // s
+    std::vector<double> index;    // from 1
+    bool interpolate = false;
 
     void add_to(CLI::App& app) {
         auto* by_density = app.add_option("--density", density, "relative densities, plain numbers separated by commas");
@@ -32,7 +37,11 @@ struct Options {
         auto* by_index = app.add_option("--index", index, "places in the stream, from 1, separated by commas");
         by_density->delimiter(',')->allow_extra_args(false)->excludes(by_time)->excludes(by_index);
         by_index->delimiter(',')->allow_extra_args(false)->check(CLI::PositiveNumber)->excludes(by_time);
+        app.add_flag("--interpolate", interpolate, "linear between the two states about each wanted value; an index may be 2.5");
         app.callback([this] {
+            for (const double place : index)
+                if (!interpolate && place != std::floor(place))
+                    throw CLI::ValidationError("--index", Json(place).dump() + " is not a whole number");
             if (wanted().empty()) throw CLI::ValidationError("one of --density, --time, --index", "is required");
         });
     }
@@ -40,7 +49,7 @@ struct Options {
     std::vector<double> wanted() const {
         if (!density.empty()) return density;
         if (!time.empty()) return time;
-        return {index.begin(), index.end()};
+        return index;
     }
 
     const char* key() const { return !density.empty() ? "density" : !time.empty() ? "time" : "index"; }
@@ -73,11 +82,66 @@ void consider(std::vector<Choice>& choices, const Options& options, State&& cand
     }
 }
 
+/// A state of the stream that has a value, and its value.
+struct Place {
+    double value;
+    std::shared_ptr<const State> state;
+};
+
+/// The state at a wanted value between two neighbours: linear in time and index, sought by bisection for the density of a periodic box.
+State between(const Place& first, const Place& second, double wanted, const Options& options) {
+    double share = (wanted - first.value) / (second.value - first.value);
+    if (options.density.empty() || measured_density(*first.state).measure != "box") return interpolated(*first.state, *second.state, share);
+    constexpr int halvings = 40;  // 1e-12 of the way
+    double low = 0.0, high = 1.0;
+    for (int halving = 0; halving < halvings; ++halving) {
+        const double reached = relative_density(interpolated(*first.state, *second.state, share));
+        ((reached < wanted) == (first.value < second.value) ? low : high) = share;
+        share = 0.5 * (low + high);
+    }
+    return interpolated(*first.state, *second.state, share);
+}
+
+void note_crossings(std::vector<Choice>& choices, const Options& options, const std::optional<Place>& before, const Place& now) {
+    for (Choice& choice : choices) {
+        const bool at_end = now.value == choice.wanted;
+        const bool crossed = before && (before->value - choice.wanted) * (now.value - choice.wanted) < 0.0;
+        if (choice.state || !(at_end || crossed)) continue;
+        State state = at_end ? *now.state : between(*before, now, choice.wanted, options);
+        const double value = options.density.empty() ? choice.wanted : measured_density(state).value.value_or(choice.wanted);
+        choice = {choice.wanted, value, 0.0, std::make_shared<const State>(std::move(state))};
+    }
+}
+
+/// Reads the stream and fills the choices; the number of states read.
+std::size_t read(io::Input& input, const Options& options, std::vector<Choice>& choices) {
+    std::size_t states = 0;
+    std::optional<Place> before;
+    while (auto state = input.next_state()) {
+        if (!options.interpolate) {
+            consider(choices, options, std::move(*state), ++states);
+            continue;
+        }
+        const std::optional<double> value = options.value_of(*state, ++states);
+        if (!value) continue;
+        const Place now{*value, std::make_shared<const State>(std::move(*state))};
+        try {
+            note_crossings(choices, options, before, now);
+        } catch (const Error& error) {
+            throw Error("state " + std::to_string(states) + " and the one before: " + error.what());
+        }
+        before = now;
+    }
+    return states;
+}
+
 /// Refuses what cannot be given and warns of what is far from what was wanted.
 void check(const Choice& choice, const Options& options, std::size_t states, bool quiet) {
+    if (!choice.state && options.interpolate)
+        throw Error("no two states of the stream have " + std::string(options.key()) + " " + Json(choice.wanted).dump() + " between them");
     if (!choice.state) throw Error("no state of the stream has a measurable density");
     if (!options.index.empty() && choice.distance > 0.0)
-        throw Error("there is no state " + Json(static_cast<std::size_t>(choice.wanted)).dump() + ", the stream has " +
+        throw Error("there is no state " + std::to_string(static_cast<std::size_t>(choice.wanted)) + ", the stream has " +
                     std::to_string(states));
     if (!options.density.empty() && choice.distance > far_in_density && !quiet)
         cli::warn("analyze select",
@@ -99,8 +163,7 @@ int select(int argc, char** argv) {
     io::Output output(common.output, common.text);
     std::vector<Choice> choices;
     for (const double wanted : options.wanted()) choices.push_back({wanted});
-    std::size_t states = 0;
-    while (auto state = input.next_state()) consider(choices, options, std::move(*state), ++states);
+    const std::size_t states = read(input, options, choices);
     for (const Choice& choice : choices) check(choice, options, states, common.quiet);
     for (const Choice& choice : choices) {
         State state = *choice.state;
