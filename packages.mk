@@ -1,5 +1,5 @@
 # packages.mk: the Debian packages that Kiln needs, and how a missing one is installed.
-BUILD_PACKAGES  := g++ libeigen3-dev libcli11-dev nlohmann-json3-dev
+BUILD_PACKAGES  := g++ libeigen3-dev libcli11-dev nlohmann-json3-dev libboost-dev
 TEST_PACKAGES   := doctest-dev bats bats-support bats-assert jq
 PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio
 PACKAGES := $(BUILD_PACKAGES) $(TEST_PACKAGES) $(PICTURE_PACKAGES)

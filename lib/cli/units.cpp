@@ -60,6 +60,11 @@ constexpr Unit units[] = {
     {Dimension::angle, "rad", 1.0},
     {Dimension::angle, "deg", std::numbers::pi, 180.0},
     {Dimension::diffusion_volume, "m3/s", 1.0},
+    {Dimension::compliance, "m/N", 1.0},
+    {Dimension::compliance, "mm/N", 1.0, 1e3},
+    {Dimension::compliance, "um/N", 1.0, 1e6},
+    {Dimension::compliance, "nm/N", 1.0, 1e9},
+    {Dimension::compliance, "mm/kN", 1.0, 1e6},
 };
 
 }  // namespace

@@ -24,6 +24,7 @@ enum class Dimension {
     mass_density,      // kg/m3
     angle,             // rad
     diffusion_volume,  // m3/s, grain boundary width times diffusivity
+    compliance,        // m/N
 };
 
 /// SI value of a text such as "50nm". Upper and lower case count. Throws CLI::ValidationError that says what was given and which

@@ -1,12 +1,16 @@
 // modulus.cpp: Young's modulus from the last unloading of each bending test.
 #include <cmath>
+#include <filesystem>
 
+#include "cli/units.h"
 #include "io/state_io.h"
 #include "physics/bending.h"
 #include "tools/analyze/analyze.h"
+#include "tools/analyze/csv.h"
 #include "tools/analyze/line_fit.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
+#include "tools/analyze/student.h"
 #include "tools/analyze/unloading.h"
 
 namespace kiln::analyze {
@@ -14,18 +18,83 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Reads dem-bend documents, writes dem-modulus documents. The slope S of force against deflection is that of the least squares "
-    "line through the last unloading, as far as its force lies in the window; E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].\n"
-    "Keys: young_modulus (Pa), standard_error (Pa; null for two points), slope (N/m), relative_density, shear_correction (the "
-    "bracket), window, points, and bond_law and method of the test. The error says how straight the curve is, not how much "
-    "packings differ.\n"
+    "Reads dem-bend documents and files FILE.csv of experiments, writes dem-modulus documents. The slope S of force against deflection is that "
+    "of the least squares line through the last unloading, as far as its force lies in the window; "
+    "E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].\n"
+    "A CSV has a heading with units, such as 'deflection (mm),force (N)' (also displacement, and punch for the travel of the machine); --span, "
+    "--width and --height are needed with it, --density if its modulus is to be fitted. With a dem-bend document they replace its own.\n"
+    "Keys: young_modulus (Pa), standard_error (Pa; null for two points), confidence_interval (95 %, Student's t; null likewise), slope (N/m), "
+    "relative_density, shear_correction (the bracket), compliance (m/N), window, points, and bond_law and method of the test. The error says "
+    "how straight the curve is, not how much packings or specimens differ.\n"
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus --table\n"
-    "  analyze modulus --window 0.9:0.1 tests.json | analyze fit";
+    "  analyze modulus --window 0.9:0.1 tests.json | analyze fit\n"
+    "  analyze modulus --span 40mm --width 4mm --height 3mm --compliance 0.2um/N --density 0.79 bar7.csv";
+
+constexpr double confidence = 0.95;
 
 const std::vector<Column> columns{{"relative_density", "relative density", ""}, {"young_modulus", "Young's modulus", "Pa"},
                                   {"standard_error", "standard error", "Pa"},   {"points", "points", ""},
                                   {"bond_law", "bond law", ""},                 {"method", "method", ""}};
+
+struct Options {
+    Window window;
+    std::optional<double> span, width, height;  // m
+    std::optional<double> density, poisson_ratio;
+    double compliance = 0.0;  // of machine and fixture, m/N
+    bool shear = true;
+
+    void add_to(CLI::App& app);
+};
+
+/// An option that stays empty unless it is given, and must be positive then.
+void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, cli::Dimension dimension, const std::string& help) {
+    const std::string known = cli::known_units(dimension);
+    app.add_option_function<std::string>(
+           name,
+           [&target, name, dimension](const std::string& text) {
+               target = cli::parse_quantity(text, dimension);
+               if (!(*target > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
+           },
+           help + (known.empty() ? "" : " [" + known + "]"))
+        ->type_name(known.empty() ? "NUMBER" : "QUANTITY");
+}
+
+void Options::add_to(CLI::App& app) {
+    using cli::Dimension;
+    app.add_option_function<std::string>(
+           "--window", [this](const std::string& text) { window = parse_window(text); },
+           "force window of the unloading, UPPER:LOWER as shares of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
+        ->default_str("5/6:1/3");
+    add_optional(app, "--span", span, Dimension::length, "distance between the supports");
+    add_optional(app, "--width", width, Dimension::length, "width of the bar");
+    add_optional(app, "--height", height, Dimension::length, "height of the bar, along the load");
+    add_optional(app, "--density", density, Dimension::none, "relative density of the specimen");
+    add_optional(app, "--poisson-ratio", poisson_ratio, Dimension::none, "Poisson's ratio in the shear correction (default 0.23 for a CSV)");
+    cli::add_quantity(app, "--compliance", compliance, Dimension::compliance,
+                      "deflection of machine and fixture per force, taken off the measured deflection", "0");
+    app.add_option_function<std::string>(
+           "--shear", [this](const std::string& text) { shear = text == "timoshenko"; }, "timoshenko: with the bracket; none: without")
+        ->check(CLI::IsMember({"timoshenko", "none"}))
+        ->default_str("timoshenko");
+}
+
+/// The CSV of an experiment as the document that bend would have written.
+io::Document test_from_csv(const std::string& file, const Options& options) {
+    const CsvTable table(file);
+    io::Document document;
+    document.place = file;
+    const auto deflection = table.required({"deflection", "displacement", "durchbiegung"}, cli::Dimension::length);
+    const auto punch = table.column({"punch", "travel", "crosshead"}, cli::Dimension::length);
+    document.header = {{"format", "dem-bend"},
+                       {"method", "experiment"},
+                       {"poisson_ratio", options.poisson_ratio.value_or(0.23)},  // alumina
+                       {"curve",
+                        {{"deflection", deflection},
+                         {"punch", punch ? *punch : deflection},
+                         {"force", table.required({"force", "load", "kraft"}, cli::Dimension::force)}}}};
+    return document;
+}
 
 struct Curve {
     std::vector<double> deflection;  // m
@@ -44,12 +113,12 @@ Curve curve_of(const io::Document& document) {
 }
 
 /// Force against deflection in the window of the last unloading, and how many points that are.
-std::pair<Line, std::size_t> unloading_line(const Curve& curve, const Window& window, const std::string& place) {
+std::pair<Line, std::size_t> unloading_line(const Curve& curve, const Options& options, const std::string& place) {
     const auto branch = last_unloading(curve.punch);
     if (!branch) throw Error(place + ": the curve has no unloading");
     std::vector<double> deflection, force;
-    for (const std::size_t point : points_in(curve.force, *branch, window)) {
-        deflection.push_back(curve.deflection[point]);
+    for (const std::size_t point : points_in(curve.force, *branch, options.window)) {
+        deflection.push_back(curve.deflection[point] - options.compliance * curve.force[point]);
         force.push_back(curve.force[point]);
     }
     if (force.size() < 2)
@@ -57,28 +126,47 @@ std::pair<Line, std::size_t> unloading_line(const Curve& curve, const Window& wi
                     " points in the window of forces, wanted two or more; give a wider --window");
     const Line line = fit_line(deflection, force);
     if (!(line.slope > 0.0) || !std::isfinite(line.slope))
-        throw Error(place + ": the force does not grow with the deflection in the last unloading");
+        throw Error(place + ": the force does not grow with the deflection in the last unloading" +
+                    (options.compliance > 0.0 ? ", less --compliance" : ""));
     return {line, force.size()};
 }
 
-Json modulus_of(const io::Document& document, const Window& window) {
+/// A size of the specimen: the option's, else the document's.
+double size_of(const io::Document& document, const std::string& key, const std::optional<double>& given) {
+    if (given) return *given;
+    if (is_csv(document.place) && !document.header.contains(key)) throw Error(document.place + ": --" + key + " is needed with a CSV");
+    return positive_at(document, key);
+}
+
+Json modulus_of(const io::Document& document, const Options& options) {
     expect_format(document, {"dem-bend"}, "modulus");
-    const double span = positive_at(document, "span");
-    const double width = positive_at(document, "width"), height = positive_at(document, "height");
-    const double poisson_ratio = number_at(document, "poisson_ratio", -1.0);
-    const double relative_density = positive_at(document, "relative_density");
-    const auto [line, points] = unloading_line(curve_of(document), window, document.place);
-    const double modulus = physics::bending_modulus(line.slope, span, width, height, poisson_ratio);
-    const double error = modulus / line.slope * line.slope_error;
+    const double span = size_of(document, "span", options.span);
+    const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
+    const double poisson_ratio = options.poisson_ratio.value_or(number_at(document, "poisson_ratio", -1.0));
+    Json density = options.density ? Json(*options.density) : Json();
+    if (!options.density && !is_csv(document.place)) density = positive_at(document, "relative_density");
+    const auto [line, points] = unloading_line(curve_of(document), options, document.place);
+    const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio) : 1.0;
+    const double factor = physics::bending_modulus(1.0, span, width, height, poisson_ratio) /
+                          physics::shear_correction(height, span, poisson_ratio) * correction;
+    const double modulus = factor * line.slope, error = factor * line.slope_error;
+    Json interval;
+    if (std::isfinite(error)) {
+        const double reach = student_factor(points - 2, confidence) * error;
+        interval = {modulus - reach, modulus + reach};
+    }
     Json result{{"format", "dem-modulus"},
                 {"version", io::format_version},
                 {"young_modulus", modulus},
                 {"standard_error", std::isfinite(error) ? Json(error) : Json()},
+                {"confidence_interval", interval},
                 {"slope", line.slope},
-                {"relative_density", relative_density},
-                {"shear_correction", physics::shear_correction(height, span, poisson_ratio)},
-                {"window", {window.upper, window.lower}},
+                {"relative_density", density},
+                {"shear_correction", correction},
+                {"compliance", options.compliance},
+                {"window", {options.window.upper, options.window.lower}},
                 {"points", points}};
+    if (is_csv(document.place)) result["source"] = std::filesystem::path(document.place).filename().string();
     for (const char* key : {"bond_law", "method", "history"})
         if (document.header.contains(key)) result[key] = document.header[key];
     return result;
@@ -87,18 +175,16 @@ Json modulus_of(const io::Document& document, const Window& window) {
 }  // namespace
 
 int modulus(int argc, char** argv) {
-    Window window;
+    Options options;
     CLI::App app{"Young's modulus from the force and deflection of three-point bending tests.", "analyze modulus"};
     app.footer(footer);
-    app.add_option_function<std::string>(
-           "--window", [&window](const std::string& text) { window = parse_window(text); },
-           "force window of the unloading, UPPER:LOWER as shares of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
-        ->default_str("5/6:1/3");
-    return report_each(app, argc, argv, columns, [&](const io::Document& document) {
-        Json result = modulus_of(document, window);
+    options.add_to(app);
+    const auto convert = [&](const io::Document& document) {
+        Json result = modulus_of(document, options);
         if (result.contains("history")) result["history"].push_back(cli::history_entry("analyze modulus", app, Json::object()));
         return result;
-    });
+    };
+    return report_each(app, argc, argv, columns, convert, [&](const std::string& file) { return test_from_csv(file, options); });
 }
 
 }  // namespace kiln::analyze

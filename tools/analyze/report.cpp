@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+
+#include "tools/analyze/csv.h"
 
 namespace kiln::analyze {
 
@@ -66,16 +69,29 @@ void Report::finish() {
     output_.commit();
 }
 
-int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns, const std::function<Json(io::Document)>& convert) {
+int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns, const std::function<Json(io::Document)>& convert,
+                const std::function<io::Document(const std::string&)>& from_table) {
     cli::Common common;
     bool table = false;
     add_table(app, table);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
 
-    io::Input input(common.files);
     Report report(common, table, columns);
-    while (auto document = input.next()) report.add(convert(std::move(*document)));
+    const auto add_all = [&](std::vector<std::string> files) {
+        io::Input input(std::move(files));
+        while (auto document = input.next()) report.add(convert(std::move(*document)));
+    };
+    std::vector<std::string> streams;  // between two tables
+    for (const std::string& file : common.files) {
+        if (!from_table || !is_csv(file)) {
+            streams.push_back(file);
+            continue;
+        }
+        if (!streams.empty()) add_all(std::exchange(streams, {}));
+        report.add(convert(from_table(file)));
+    }
+    if (!streams.empty() || common.files.empty()) add_all(streams);
     report.finish();
     return cli::done;
 }

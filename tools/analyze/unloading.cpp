@@ -9,7 +9,8 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr double rounding = 1e-9;  // of the peak force, by which a point may miss the window
+constexpr double rounding = 1e-9;      // of the peak force, by which a point may miss the window
+constexpr double least_return = 0.02;  // of the whole travel, by which the punch must go back; less is tremor of the reading
 
 std::optional<double> number_of(std::string_view text) {
     double number = 0.0;
@@ -32,12 +33,23 @@ std::optional<double> fraction_of(std::string_view text) {
 
 std::optional<Branch> last_unloading(std::span<const double> travel) {
     if (travel.size() < 2) return std::nullopt;
-    std::size_t last = travel.size() - 1;
-    while (last > 0 && !(travel[last] < travel[last - 1])) --last;
-    if (last == 0) return std::nullopt;
-    std::size_t first = last;
-    while (first > 0 && travel[first - 1] > travel[first]) --first;
-    return Branch{first, last};
+    const auto [least, most] = std::ranges::minmax(travel);
+    const double tremor = least_return * (most - least);
+    std::optional<Branch> found;
+    std::size_t top = 0, bottom = 0;  // of the stretch that is being walked, as far as it goes
+    bool down = false;
+    for (std::size_t point = 1; point < travel.size(); ++point) {
+        if (travel[point] > travel[top]) top = point;
+        if (travel[point] < travel[bottom]) bottom = point;
+        const bool turns_down = !down && travel[point] < travel[top] - tremor;
+        const bool turns_up = down && travel[point] > travel[bottom] + tremor;
+        if (turns_up) top = point;
+        if (turns_down) bottom = point;
+        if (turns_up || turns_down) down = !down;
+        if (turns_down) found = Branch{top, bottom};
+        if (down) found->last = bottom;
+    }
+    return found;
 }
 
 Window parse_window(const std::string& text) {
