@@ -1,45 +1,41 @@
 // fit.cpp: a law of Young's modulus against porosity through the results of several tests.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
+#include "tools/analyze/fit_points.h"
 #include "tools/analyze/laws.h"
 #include "tools/analyze/report.h"
-#include "tools/analyze/results.h"
+#include "tools/analyze/student.h"
 
 namespace kiln::analyze {
 
 namespace {
 
 constexpr const char* footer =
-    "Reads dem-modulus documents (and dem-elastic ones), all of them for one fit; P = 1 - relative density is the porosity.\n"
-    "Keys: law, formula, E0 (Pa), b, standard_errors, covariance, points, residuals (Pa, measured minus law), r_squared, "
-    "weighting, degrees_of_freedom. The scatter of the points about the law sets the scale of all errors; with as many points as "
+    "Reads dem-modulus documents (and dem-elastic ones) and tables FILE.csv, all of them for one fit; P = 1 - relative density is the porosity. "
+    "A table has the columns relative_density (or porosity), young_modulus and, if there is one, standard_error, such as "
+    "'relative_density,young_modulus (GPa)'. Several laws give a document each, the best by AICc first.\n"
+    "Keys: law, formula, source, E0 (Pa), b or Pc, standard_errors, confidence_intervals (95 %, Student's t), covariance, points, residuals "
+    "(Pa, measured minus law), r_squared, aic, aicc, weighting, degrees_of_freedom, band {relative_density, young_modulus, and 95 % "
+    "intervals (Pa) of the law, confidence, and of one more point, prediction}, references (curves of the literature at the same densities). "
+    "The scatter of the points about the law sets the scale of all errors; with as many points as "
     "parameters there is none, and the errors are null.\n"
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus | analyze fit --law knudsen --table\n"
-    "  analyze fit --law power tests.json | jq '.[\"E0\"]'";
+    "  analyze fit --law all --table tests.json\n"
+    "  analyze fit --law power --data measured.csv tests.json | jq .data.rms_deviation\n"
+    "  analyze fit --law pabst measured.csv | jq '.[\"Pc\"]'";
+
+constexpr double confidence = 0.95;
 
 /// Errors of moduli smaller than this share of them are those of a computed straight line and say nothing about the points.
 constexpr double least_error = 1e-6;
 
 enum class Weights { automatic, errors, equal };
-
-struct Points {
-    std::vector<double> porosity, modulus, error;  // -, Pa, Pa (NaN where there is none)
-};
-
-void add_point(Points& points, const io::Document& document) {
-    expect_format(document, {"dem-modulus", "dem-elastic"}, "fit");
-    const double density = positive_at(document, "relative_density");
-    if (density > 1.0) throw Error(document.place + ": relative_density is " + Json(density).dump() + ", more than 1");
-    points.porosity.push_back(1.0 - density);
-    points.modulus.push_back(positive_at(document, "young_modulus"));
-    const bool has_error = document.header.contains("standard_error") && !document.header["standard_error"].is_null();
-    points.error.push_back(has_error ? number_at(document, "standard_error", 0.0) : std::nan(""));
-}
 
 /// Whether the points are weighted by their errors.
 bool weighted(const Points& points, Weights weights) {
@@ -63,23 +59,68 @@ Json matrix_json(const Eigen::MatrixXd& matrix) {
     return rows;
 }
 
+/// The law, its 95 % intervals and the curves of the literature at densities from the lowest of the points to 1.
+void add_band(Json& result, const Law& law, const Fit& fit, const Points& points, const std::vector<double>& weight) {
+    constexpr int steps = 40;
+    const double t = fit.covariance ? student_factor(fit.degrees_of_freedom, confidence) : 0.0;
+    double mean_weight = 0.0;
+    for (const double each : weight) mean_weight += each / static_cast<double>(weight.size());
+    const double lowest = 0.05 * std::floor(20.0 * (1.0 - std::ranges::max(points.porosity)));
+    Json density = Json::array(), modulus = Json::array(), certain = Json::array(), predicted = Json::array(), curves = Json::array();
+    for (const Reference& reference : references())
+        curves.push_back({{"name", reference.name}, {"formula", reference.formula}, {"source", reference.source}, {"young_modulus", Json::array()}});
+    for (int step = 0; step <= steps; ++step) {
+        const double porosity = (1.0 - lowest) * (1.0 - step / static_cast<double>(steps));
+        const double value = law.modulus(porosity, fit.parameters);
+        density.push_back(1.0 - porosity);
+        modulus.push_back(value);
+        for (std::size_t curve = 0; curve < references().size(); ++curve) {
+            const Reference& reference = references()[curve];
+            curves[curve]["young_modulus"].push_back(porosity <= reference.largest_porosity ? Json(reference.modulus(porosity)) : Json());
+        }
+        if (!fit.covariance) continue;
+        const double error = error_at(law, fit, porosity);
+        const double wide = std::sqrt(error * error + fit.scatter / mean_weight);
+        certain.push_back({value - t * error, value + t * error});
+        predicted.push_back({value - t * wide, value + t * wide});
+    }
+    result["band"] = {{"relative_density", density}, {"young_modulus", modulus}};
+    result["band"]["confidence"] = fit.covariance ? certain : Json();
+    result["band"]["prediction"] = fit.covariance ? predicted : Json();
+    result["references"] = curves;
+}
+
+/// Measurements beside the fit, and how far they lie from it: the root of the mean square of measured over law minus 1.
+Json overlay_json(const Law& law, const Fit& fit, const Points& data) {
+    double squares = 0.0;
+    for (std::size_t point = 0; point < data.modulus.size(); ++point) {
+        const double off = data.modulus[point] / law.modulus(data.porosity[point], fit.parameters) - 1.0;
+        squares += off * off;
+    }
+    return {{"points", points_json(data)}, {"rms_deviation", std::sqrt(squares / static_cast<double>(data.modulus.size()))}};
+}
+
 Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_errors) {
-    Json result{{"format", "dem-fit"}, {"version", io::format_version}, {"law", law.name}, {"formula", law.formula}};
-    Json errors;
+    Json result{{"format", "dem-fit"}, {"version", io::format_version}, {"law", law.name}, {"formula", law.formula}, {"source", law.source}};
+    Json errors, intervals;
     for (std::size_t k = 0; k < law.parameters.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
-        result[law.parameters[k].name] = fit.parameters[k];
-        errors[law.parameters[k].name] = fit.covariance ? Json(std::sqrt((*fit.covariance)(row, row))) : Json();
+        const std::string& name = law.parameters[k].name;
+        result[name] = fit.parameters[k];
+        errors[name] = intervals[name] = Json();
+        if (!fit.covariance) continue;
+        const double error = std::sqrt((*fit.covariance)(row, row)), reach = student_factor(fit.degrees_of_freedom, confidence) * error;
+        errors[name] = error;
+        intervals[name] = {fit.parameters[k] - reach, fit.parameters[k] + reach};
     }
     result["standard_errors"] = errors;
+    result["confidence_intervals"] = intervals;
     result["covariance"] = fit.covariance ? matrix_json(*fit.covariance) : Json();
-    result["points"] = Json::array();
-    for (std::size_t point = 0; point < points.modulus.size(); ++point)
-        result["points"].push_back({{"porosity", points.porosity[point]},
-                                    {"young_modulus", points.modulus[point]},
-                                    {"standard_error", std::isnan(points.error[point]) ? Json() : Json(points.error[point])}});
+    result["points"] = points_json(points);
     result["residuals"] = fit.residuals;
     result["r_squared"] = fit.r_squared;
+    result["aic"] = fit.aic;
+    result["aicc"] = fit.aicc ? Json(*fit.aicc) : Json();
     result["weighting"] = by_errors ? "standard errors" : "equal";
     result["degrees_of_freedom"] = fit.degrees_of_freedom;
     return result;
@@ -87,13 +128,15 @@ Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_erro
 
 std::string error_key(const Parameter& parameter) { return parameter.name + " error"; }
 
-std::vector<Column> columns_of(const Law& law) {
-    std::vector<Column> columns{{"formula", "law", ""}};
-    for (const Parameter& parameter : law.parameters) {
-        columns.push_back({parameter.name, parameter.name, parameter.unit});
-        columns.push_back({error_key(parameter), "its error", parameter.unit});
-    }
-    columns.insert(columns.end(), {{"count", "points", ""}, {"weighting", "weighting", ""}, {"r_squared", "R2", ""}});
+std::vector<Column> columns_of(const std::vector<const Law*>& wanted) {
+    std::vector<Column> columns{{"law", "law", ""}, {"formula", "formula", ""}};
+    for (const Law* law : wanted)
+        for (const Parameter& parameter : law->parameters) {
+            if (std::ranges::find(columns, parameter.name, &Column::key) != columns.end()) continue;
+            columns.push_back({parameter.name, parameter.name, parameter.unit});
+            columns.push_back({error_key(parameter), "its error", parameter.unit});
+        }
+    columns.insert(columns.end(), {{"count", "points", ""}, {"weighting", "weighting", ""}, {"r_squared", "R2", ""}, {"aicc", "AICc", ""}});
     return columns;
 }
 
@@ -104,46 +147,96 @@ Json table_row(const Law& law, Json result) {
     return result;
 }
 
-}  // namespace
+/// The laws of a list such as "knudsen,power", or of "all".
+std::vector<const Law*> laws_of(const std::string& names) {
+    std::vector<const Law*> wanted;
+    if (names == "all")
+        for (const Law& law : laws())
+            if (!law.same_as_another) wanted.push_back(&law);
+    for (std::size_t start = 0; names != "all" && start <= names.size();) {
+        const std::size_t end = std::min(names.find(',', start), names.size());
+        wanted.push_back(&law_named(names.substr(start, end - start)));
+        start = end + 1;
+    }
+    return wanted;
+}
 
-int fit(int argc, char** argv) {
-    cli::Common common;
-    bool table = false;
-    std::string name = "knudsen";
+struct Options {
+    std::vector<const Law*> wanted{&laws().front()};
     Weights weights = Weights::automatic;
-    const std::map<std::string, Weights> weightings{
+    std::string data;
+    bool table = false;
+
+    void add_to(CLI::App& app);
+};
+
+void Options::add_to(CLI::App& app) {
+    static const std::map<std::string, Weights> weightings{
         {"auto", Weights::automatic}, {"errors", Weights::errors}, {"equal", Weights::equal}};
-    std::vector<std::string> names;
-    for (const Law& law : laws()) names.push_back(law.name);
-    CLI::App app{"Fits a law of Young's modulus against porosity by weighted least squares.", "analyze fit"};
-    app.footer(footer);
-    app.add_option("--law", name, "knudsen: E0 exp(-b P); linear: E0 (1 - b P); power: E0 (1 - P)^b")
-        ->check(CLI::IsMember(names))
-        ->capture_default_str();
+    std::string known;
+    for (const Law& law : laws()) known += law.name + ": " + law.formula + "; ";
     app.add_option_function<std::string>(
-           "--weights", [&](const std::string& text) { weights = weightings.at(text); },
+           "--law",
+           [this](const std::string& names) {
+               try {
+                   wanted = laws_of(names);
+               } catch (const Error& error) {
+                   throw CLI::ValidationError("--law", error.what());
+               }
+           },
+           known + "several separated by commas, or all")
+        ->type_name("LAW,…")
+        ->default_str("knudsen");
+    app.add_option_function<std::string>(
+           "--weights", [this](const std::string& text) { weights = weightings.at(text); },
            "errors: by the standard errors of the moduli; equal: all points alike; auto: by the errors if every modulus "
            "has one above 1e-6 of it, else equal")
         ->check(CLI::IsMember(weightings))
         ->default_str("auto");
+    app.add_option("--data", data, "measurements that are not fitted, to lie beside the fit: a table as above")->type_name("FILE.csv");
     add_table(app, table);
+}
+
+/// Results of all wanted laws, the best first where there are several.
+std::vector<std::pair<const Law*, Json>> results_of(const Options& options, const Points& points, bool quiet) {
+    const bool by_errors = weighted(points, options.weights);
+    std::vector<double> weight(points.error.size(), 1.0);
+    if (by_errors) std::ranges::transform(points.error, weight.begin(), [](double error) { return 1.0 / (error * error); });
+    Points data;
+    if (!options.data.empty()) add_table_points(data, options.data);
+    std::vector<std::pair<const Law*, Json>> results;
+    for (const Law* law : options.wanted) {
+        const Fit found = fit_law(*law, points.porosity, points.modulus, weight);
+        if (found.degrees_of_freedom == 0 && !quiet)
+            cli::warn("analyze fit", "as many points as parameters: the standard errors are unknown");
+        Json result = fit_json(*law, found, points, by_errors);
+        add_band(result, *law, found, points, weight);
+        if (!options.data.empty()) result["data"] = overlay_json(*law, found, data);
+        results.emplace_back(law, std::move(result));
+    }
+    const auto criterion = [](const auto& entry) {
+        const Json& corrected = entry.second["aicc"];
+        return corrected.is_null() ? std::numeric_limits<double>::infinity() : corrected.template get<double>();
+    };
+    std::ranges::stable_sort(results, {}, criterion);
+    return results;
+}
+
+}  // namespace
+
+int fit(int argc, char** argv) {
+    cli::Common common;
+    Options options;
+    CLI::App app{"Fits laws of Young's modulus against porosity by weighted least squares.", "analyze fit"};
+    app.footer(footer);
+    options.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
 
-    io::Input input(common.files);
-    Points points;
-    while (const auto document = input.next()) add_point(points, *document);
-    const bool by_errors = weighted(points, weights);
-    std::vector<double> weight(points.error.size(), 1.0);
-    if (by_errors) std::ranges::transform(points.error, weight.begin(), [](double error) { return 1.0 / (error * error); });
-
-    const Law& law = law_named(name);
-    const Fit found = fit_law(law, points.porosity, points.modulus, weight);
-    if (found.degrees_of_freedom == 0 && !common.quiet)
-        cli::warn("analyze fit", "as many points as parameters: the standard errors are unknown");
-    const Json result = fit_json(law, found, points, by_errors);
-    Report report(common, table, columns_of(law));
-    report.add(table ? table_row(law, result) : result);
+    const Points points = read_points(common.files);
+    Report report(common, options.table, columns_of(options.wanted));
+    for (auto& [law, result] : results_of(options, points, common.quiet))
+        report.add(options.table ? table_row(*law, std::move(result)) : std::move(result));
     report.finish();
     return cli::done;
 }

@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unsupported/Eigen/LevenbergMarquardt>
 #include <unsupported/Eigen/NumericalDiff>
 
@@ -70,6 +71,16 @@ double weighted_r_squared(Values modulus, Values weight, Values residuals) {
     return total > 0.0 ? 1.0 - left / total : 1.0;
 }
 
+/// Akaike's criterion of a fit and its corrected form.
+void add_criteria(Fit& fit, Values weight, std::size_t parameters) {
+    double sum = 0.0;
+    for (std::size_t point = 0; point < weight.size(); ++point) sum += weight[point] * fit.residuals[point] * fit.residuals[point];
+    const double n = static_cast<double>(weight.size()), k = static_cast<double>(parameters + 1);
+    if (fit.degrees_of_freedom > 0) fit.scatter = sum / static_cast<double>(fit.degrees_of_freedom);
+    fit.aic = n * std::log(std::max(sum, std::numeric_limits<double>::min()) / n) + 2.0 * k;
+    if (n > k + 1.0) fit.aicc = fit.aic + 2.0 * k * (k + 1.0) / (n - k - 1.0);
+}
+
 /// s^2 (J^T J)^-1 in the units of the parameters, s^2 the mean square of the weighted residuals.
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian, const VectorXd& residuals, std::size_t freedom, Values unit) {
     const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
@@ -115,7 +126,20 @@ Fit fit_law(const Law& law, Values porosity, Values modulus, Values weight) {
         fit.residuals.push_back(modulus[point] - law.modulus(porosity[point], fit.parameters));
     fit.r_squared = weighted_r_squared(modulus, weight, fit.residuals);
     if (fit.degrees_of_freedom > 0) fit.covariance = covariance_of(jacobian, residuals, fit.degrees_of_freedom, problem.unit);
+    add_criteria(fit, weight, parameters);
     return fit;
+}
+
+double error_at(const Law& law, const Fit& fit, double porosity) {
+    VectorXd gradient(static_cast<Eigen::Index>(fit.parameters.size()));
+    for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+        const double step = 1e-5 * (fit.parameters[k] == 0.0 ? 1.0 : std::abs(fit.parameters[k]));  // central differences: 1e-10 is left
+        std::vector<double> above(fit.parameters), below(fit.parameters);
+        above[k] += step;
+        below[k] -= step;
+        gradient[static_cast<Eigen::Index>(k)] = (law.modulus(porosity, above) - law.modulus(porosity, below)) / (2.0 * step);
+    }
+    return std::sqrt(std::max(0.0, gradient.dot(*fit.covariance * gradient)));
 }
 
 }  // namespace kiln::analyze

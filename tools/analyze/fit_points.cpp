@@ -1,0 +1,73 @@
+// fit_points.cpp: points of a fit, from documents and tables.
+#include "tools/analyze/fit_points.h"
+
+#include <cmath>
+#include <utility>
+
+#include "io/files.h"
+#include "tools/analyze/csv.h"
+#include "tools/analyze/results.h"
+
+namespace kiln::analyze {
+
+void add_point(Points& points, const io::Document& document) {
+    expect_format(document, {"dem-modulus", "dem-elastic"}, "fit");
+    const double density = positive_at(document, "relative_density");
+    if (density > 1.0) throw Error(document.place + ": relative_density is " + Json(density).dump() + ", more than 1");
+    points.porosity.push_back(1.0 - density);
+    points.modulus.push_back(positive_at(document, "young_modulus"));
+    const bool has_error = document.header.contains("standard_error") && !document.header["standard_error"].is_null();
+    points.error.push_back(has_error ? number_at(document, "standard_error", 0.0) : std::nan(""));
+}
+
+void add_table_points(Points& points, const std::string& file) {
+    const CsvTable table(file);
+    std::optional<std::vector<double>> porosity = table.column({"porosity"}, cli::Dimension::none);
+    if (!porosity) {
+        porosity = table.required({"relative_density", "relative density", "density"}, cli::Dimension::none);
+        for (double& value : *porosity) value = 1.0 - value;
+    }
+    const std::vector<double> modulus = table.required({"young_modulus", "young's modulus", "young modulus", "modulus", "e (", "e_"},
+                                                       cli::Dimension::pressure);
+    const auto error = table.column({"standard_error", "standard error", "error"}, cli::Dimension::pressure);
+    for (std::size_t row = 0; row < modulus.size(); ++row) {
+        const std::string place = file + ", row " + std::to_string(row + 1);
+        if (!((*porosity)[row] >= 0.0 && (*porosity)[row] < 1.0))
+            throw Error(place + ": the porosity is " + Json((*porosity)[row]).dump() + ", wanted 0 or more and less than 1");
+        if (!(modulus[row] > 0.0)) throw Error(place + ": the modulus is " + Json(modulus[row]).dump() + " Pa, wanted a positive number");
+        if (error && (*error)[row] < 0.0) throw Error(place + ": the standard error is negative");
+        points.porosity.push_back((*porosity)[row]);
+        points.modulus.push_back(modulus[row]);
+        points.error.push_back(error ? (*error)[row] : std::nan(""));
+    }
+}
+
+Points read_points(const std::vector<std::string>& files) {
+    Points points;
+    std::vector<std::string> streams;
+    const auto read_streams = [&] {
+        io::Input input(std::exchange(streams, {}));
+        while (const auto document = input.next()) add_point(points, *document);
+    };
+    for (const std::string& file : files) {
+        if (!is_csv(file)) {
+            streams.push_back(file);
+            continue;
+        }
+        if (!streams.empty()) read_streams();
+        add_table_points(points, file);
+    }
+    if (!streams.empty() || files.empty()) read_streams();
+    return points;
+}
+
+Json points_json(const Points& points) {
+    Json list = Json::array();
+    for (std::size_t point = 0; point < points.modulus.size(); ++point)
+        list.push_back({{"porosity", points.porosity[point]},
+                        {"young_modulus", points.modulus[point]},
+                        {"standard_error", std::isnan(points.error[point]) ? Json() : Json(points.error[point])}});
+    return list;
+}
+
+}  // namespace kiln::analyze

@@ -1,0 +1,29 @@
+// fit_points.h: the points of a fit of modulus against porosity, from results of tests and from tables of measurements.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "io/document.h"
+
+namespace kiln::analyze {
+
+struct Points {
+    std::vector<double> porosity, modulus, error;  // -, Pa, Pa (NaN where there is none)
+};
+
+/// Adds the point of a dem-modulus or dem-elastic document. Throws Error naming the document and the key that is missing or out of range.
+void add_point(Points& points, const io::Document& document);
+
+/// Adds the points of a CSV: relative_density or porosity (plain numbers), young_modulus, and optionally standard_error, both with units.
+/// Throws Error naming the file.
+void add_table_points(Points& points, const std::string& file);
+
+/// The points of all files, or of standard input: streams, and tables where the name ends in .csv.
+Points read_points(const std::vector<std::string>& files);
+
+/// A list of {porosity, young_modulus, standard_error}.
+Json points_json(const Points& points);
+
+}  // namespace kiln::analyze
