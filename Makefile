@@ -77,13 +77,13 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 $(BUILD)/tests/%.o: OPTIMISE := -O1
 
 # ---- tests --------------------------------------------------------------------------------------------------------------------
-test: all $(BUILD)/test/unit    ## build and run all tests; ends with "N passed, M failed"
+test: all $(BUILD)/test/unit $(BUILD)/neighbours-present  ## build and run all tests; ends with "N passed, M failed"
 	@BUILD=$(BUILD) PYTHON=$(PYTHON) tests/run.sh
 
 unit-test: $(BUILD)/test/unit   ## closed forms, conservation laws, limits
 	$(BUILD)/test/unit
 
-cli-test: all                   ## the programs as a user runs them
+cli-test: all $(BUILD)/neighbours-present  ## the programs as a user runs them
 	@BUILD=$(BUILD) PYTHON=$(PYTHON) UNIT=0 tests/run.sh
 
 asan:                           ## build with address and undefined-behaviour sanitizers into build-asan and run all tests
@@ -94,11 +94,15 @@ asan:                           ## build with address and undefined-behaviour sa
 bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines in build/bench
 	@for name in $(BENCH_NAMES); do echo "== $$name"; $(BUILD)/bench/$$name | tee $(BUILD)/bench/$$name.jsonl; done
 
-man: $(TOOLS:%=$(BUILD)/man/%.1) $(BUILD)/man/dem-state.5   ## manual pages into build/man
+man: $(TOOLS:%=$(BUILD)/man/%.1) $(BUILD)/man/dem-convert.1 $(BUILD)/man/dem-state.5   ## manual pages into build/man
 
 $(BUILD)/man/%.1: $(BUILD)/bin/% docs/help-to-man.sh
 	@mkdir -p $(@D)
 	docs/help-to-man.sh $< > $@
+
+$(BUILD)/man/dem-convert.1: workflows/post/dem-convert workflows/post/dem_convert.py docs/help-to-man.sh
+	@mkdir -p $(@D)
+	PYTHONDONTWRITEBYTECODE=1 docs/help-to-man.sh $< > $@
 
 $(BUILD)/man/dem-state.5: docs/dem-state.5
 	@mkdir -p $(@D)
@@ -107,6 +111,10 @@ $(BUILD)/man/dem-state.5: docs/dem-state.5
 install: all man                ## install programs and manual pages under PREFIX (default /usr/local)
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
 	install $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
+	install -d $(DESTDIR)$(PREFIX)/share/kiln/post
+	install -m 644 workflows/post/dem_state.py workflows/post/dem_convert.py workflows/post/convert_*.py $(DESTDIR)$(PREFIX)/share/kiln/post
+	install workflows/post/dem-convert $(DESTDIR)$(PREFIX)/share/kiln/post
+	ln -sf ../share/kiln/post/dem-convert $(DESTDIR)$(PREFIX)/bin/dem-convert
 	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 $(BUILD)/man/*.5 $(DESTDIR)$(PREFIX)/share/man/man5
 

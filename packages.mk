@@ -2,17 +2,14 @@
 BUILD_PACKAGES  := g++ libeigen3-dev libcli11-dev nlohmann-json3-dev libboost-dev
 TEST_PACKAGES   := doctest-dev bats bats-support bats-assert jq
 PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio
+# Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip without.
+NEIGHBOUR_PACKAGES := python3-vtk9 chromium snakemake
 PACKAGES := $(BUILD_PACKAGES) $(TEST_PACKAGES) $(PICTURE_PACKAGES)
 
-# As root nothing is asked; otherwise sudo is used; where there is no apt-get the list is printed and the build stops.
-$(BUILD)/packages-present: packages.mk
-	@mkdir -p $(@D)
-	@missing=(); \
-	if ! command -v apt-get >/dev/null; then \
-	    echo "Kiln needs what these Debian packages hold; install their like and run 'touch $@':" >&2; \
-	    echo "  $(PACKAGES)" >&2; exit 1; \
-	fi; \
-	for package in $(PACKAGES); do \
+# Installs those of $(1) that are missing. As root nothing is asked; otherwise sudo is used.
+define install_missing
+	missing=(); \
+	for package in $(1); do \
 	    dpkg-query -W -f '$${db:Status-Status}' "$$package" 2>/dev/null | grep -qx installed || missing+=("$$package"); \
 	done; \
 	if (( $${#missing[@]} )); then \
@@ -21,4 +18,19 @@ $(BUILD)/packages-present: packages.mk
 	    "$${run[@]}" apt-get update -qq; \
 	    "$${run[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$${missing[@]}" >/dev/null; \
 	fi
+endef
+
+# Where there is no apt-get the list is printed and the build stops.
+$(BUILD)/packages-present: packages.mk
+	@mkdir -p $(@D)
+	@if ! command -v apt-get >/dev/null; then \
+	    echo "Kiln needs what these Debian packages hold; install their like and run 'touch $@':" >&2; \
+	    echo "  $(PACKAGES)" >&2; exit 1; \
+	fi
+	@$(call install_missing,$(PACKAGES))
+	@touch $@
+
+# Without these the tests that need them are skipped.
+$(BUILD)/neighbours-present: packages.mk | $(BUILD)/packages-present
+	@($(call install_missing,$(NEIGHBOUR_PACKAGES))) || echo "$(NEIGHBOUR_PACKAGES): not installed; their tests are skipped" >&2
 	@touch $@
