@@ -152,7 +152,7 @@ END
     assert_equal "$(jq -sc '.[1] | [.bonds.image.data, (.bonds.radius.data[0] * 1e9 | round), .box.periodic, (.particles.radius.data[0] * 1e9 | round)]' <<<"$output")" \
         "[[-1,0,0],20,[true,false,false],50]"
     near "$(jq -s '.[1].particles.velocity.data[0]' <<<"$output")" 1 0
-    run -0 bash -c '"$CONVERT" musen.txt - | "$ANALYZE" bonds'
+    run -0 bash -c '"$CONVERT" musen.txt - | "$ANALYZE" density'
     printf '0 0 1 1 5 5e-08 5e-08 2 0 12 1 2\n' >short.txt
     run -1 "$CONVERT" short.txt -
     assert_output "dem-convert: short.txt, line 1: the command 12 wants 3 values, 2 are there"
