@@ -1,7 +1,7 @@
 # common.mk: what every study shares: the programs, the settings of a run, the rules from one kind of file to the next.
 #
 # A study includes this file after it has said what it is: STUDY (a name), CASES (relative densities), GREEN, SINTERING, BONDING and
-# BENDING (options of the four stages). Every file of a run stands under OUT; a case is a folder there, named for its density:
+# BENDING (options of the four stages); FIT holds those of the fit. Every file of a run stands under OUT; a case is a folder there, named for its density:
 #   green.kiln  sintered.kiln  history.jsonl  0.67/{sintered.kiln,bonded.kiln,bonds.json,bend.json,bent.kiln,modulus.json}  fit.json
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
@@ -13,6 +13,7 @@ POST    := $(ROOT)/workflows/post
 BIN     ?= $(ROOT)/build/bin
 OUT     ?= $(ROOT)/build/$(STUDY)
 PYTHON  ?= /usr/bin/python3
+FIT     ?= --law knudsen
 SINTER  ?= $(BIN)/sinter
 BONDIFY ?= $(BIN)/bondify
 BEND    ?= $(BIN)/bend
@@ -42,7 +43,7 @@ $(OWN) &:
 .PHONY: FORCE
 FORCE:
 
-$(OUT)/GREEN.settings $(OUT)/SINTERING.settings $(OUT)/BONDING.settings $(OUT)/BENDING.settings: $(OUT)/%.settings: FORCE
+$(addprefix $(OUT)/,$(addsuffix .settings,GREEN SINTERING BONDING BENDING FIT)): $(OUT)/%.settings: FORCE
 	@mkdir -p $(@D)
 	@cmp -s $@ <(echo '$($*)') || echo '$($*)' > $@
 
@@ -70,8 +71,8 @@ $(OUT)/%/bend.json $(OUT)/%/bent.kiln: $(OUT)/%/bonded.kiln $(OUT)/BENDING.setti
 $(OUT)/%/modulus.json: $(OUT)/%/bend.json | $(PROGRAMS)
 	$(MEASURE) $@ $(ANALYZE) modulus -o $@ $<
 
-$(OUT)/fit.json: $(call each_case,modulus.json) | $(PROGRAMS)
-	$(MEASURE) $@ $(ANALYZE) fit --law knudsen -o $@ $^
+$(OUT)/fit.json: $(call each_case,modulus.json) $(OUT)/FIT.settings | $(PROGRAMS)
+	$(MEASURE) $@ $(ANALYZE) fit $(FIT) -o $@ $(filter %.json,$^)
 
 # ---- all stages, named so that a missing file is made again and none is taken for a passing step -------------------------------
 CASE_STAGES := sintered.kiln bonded.kiln bonds.json bend.json modulus.json

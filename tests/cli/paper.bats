@@ -53,7 +53,45 @@ for path in sys.argv[1:]:
     ink = (pixels.min(axis=2) < 0.9).mean()
     print(path.split("/")[-1], "drawn" if min(pixels.shape[:2]) > 300 and 0.005 < ink < 0.6 else f"ink {ink}, size {pixels.shape}")
 END
-    assert_output $'bend.png drawn\nbonds.png drawn\ndensity.png drawn\nmodulus.png drawn'
+    assert_output $'bend.png drawn\nbonds.png drawn\ndensity.png drawn\nmodulus.png drawn\nstates.png drawn'
+}
+
+@test "the report is one page that needs nothing else, with the figures, both columns of Table 2, and every command" {
+    run -0 "$PYTHON" - <<'END'
+import html.parser, json, os
+class Page(html.parser.HTMLParser):
+    images, links, text = [], [], ""
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.images += [given["src"]] if tag == "img" else []
+        self.links += [given["href"]] if "href" in given else []
+        assert tag not in ("script", "link", "iframe"), tag
+    def handle_data(self, data):
+        self.text += data + "\n"
+page = Page()
+page.feed(open("report.html", encoding="utf-8").read())
+print(os.path.getsize("report.html") < 5e6, len(page.images), all(image.startswith("data:image/png;base64,") for image in page.images))
+print(all(os.path.exists(link) for link in page.links), {"green.kiln", "0.79/bend.json", "fit.json"} <= set(page.links))
+entries = json.load(open("table2.json"))
+print(all(f"{entry[key]:,.{entry['decimals']}f}\n" in page.text for entry in entries for key in ("run", "paper")))
+print([word for word in ("sinter green --particles 600 --method affine --compact-to 0.6 --aspect 4:1:1 --seed 5", "bondify\n", "bend\n", "Kiln 0.1.0")
+       if word not in page.text])
+END
+    assert_output $'True 5 True\nTrue True\nTrue\n[]'
+}
+
+@test "a browser shows the report" {
+    type -P chromium >/dev/null || skip "there is no chromium"
+    chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$BATS_TEST_TMPDIR/profile" --window-size=1200,3000 \
+        --screenshot="$BATS_TEST_TMPDIR/page.png" "file://$PWD/report.html" 2>/dev/null
+    run -0 "$PYTHON" - "$BATS_TEST_TMPDIR/page.png" <<'END'
+import sys
+from matplotlib import image
+pixels = image.imread(sys.argv[1])[..., :3]
+ink = [(part.min(axis=2) < 0.9).mean() for part in (pixels[:400], pixels[400:1600], pixels[1600:3000])]  # headings, packing, plots
+print(pixels.shape[:2], all(0.005 < share < 0.5 for share in ink) or ink)
+END
+    assert_output "(3000, 1200) True"
 }
 
 @test "a second call makes nothing" {

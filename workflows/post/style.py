@@ -3,6 +3,7 @@ import argparse
 import os
 
 import matplotlib
+import matplotlib.colors
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402  (the backend comes first)
@@ -13,6 +14,8 @@ GPA = 1e9  # Pa
 # Colours that stay apart in grey and for colour-blind readers: rising densities from light to dark, and three for single lines.
 SERIES = ("#7ad151", "#22a884", "#35608d", "#440154")
 ACCENT, LINE, REFERENCE = "#d55e00", "#0072b2", "#707070"
+
+SOLID = matplotlib.colors.LinearSegmentedColormap.from_list("solid", ("#10263b", "#6b93b8", "#f4f8fb"))  # of shaded surfaces
 
 WIDTH = 5.2  # inches, a column and a half of a journal
 
