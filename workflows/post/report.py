@@ -45,7 +45,7 @@ a { color: var(--accent); }
   h1 { font-size: 16pt; } h2 { margin-top: 1.2rem; break-after: avoid; }
   dl.facts { grid-template-columns: repeat(5, 1fr); }
   .figures { display: block; } figure, figure.wide { display: inline-block; width: 48%; margin: 0 1% 1rem 0; vertical-align: top; }
-  figure.wide { width: 100%; max-width: none; } figure.wide img { width: auto; max-width: 100%; max-height: 12.5cm; }
+  figure.wide { display: block; width: 100%; max-width: none; } figure.wide img { width: auto; max-width: 100%; max-height: 12.5cm; }
   section.files { display: none; }
 }
 """
