@@ -1,0 +1,88 @@
+"""ensemble.py: means of every number over the packings of an ensemble, with 95 % confidence intervals, as text, CSV and JSON.
+
+The interval is mean +- t s/sqrt(n), s the standard deviation of the n packings and t of Student's distribution with n - 1 degrees of freedom."""
+import argparse
+import csv
+import json
+import math
+import pathlib
+
+import numpy
+
+from dem_state import read_file
+
+CONFIDENCE = 0.95
+NUMBERS = (  # heading, unit, factor, file, and how the number is read from it
+    ("relative density", "", 1.0, "density", lambda result: result["relative_density"]),
+    ("coordination number", "", 1.0, "density", lambda result: result["coordination_number"]),
+    ("mean overlap h/2R", "", 1.0, "density", lambda result: result["mean_overlap_ratio"]),
+    ("bonds per particle", "", 1.0, "bonds", lambda result: result["count"] / result["particles"]),
+    ("mean bond diameter", "nm", 1e9, "bonds", lambda result: result["mean_diameter"]),
+    ("mean bond length", "nm", 1e9, "bonds", lambda result: result["mean_length"]),
+    ("bond share of solid", "", 1.0, "bonds", lambda result: result["bond_volume_fraction"]),
+    ("Young's modulus", "GPa", 1e-9, "modulus", lambda result: result["young_modulus"]),
+)
+
+
+def student_factor(freedom):
+    """t with P(|x| < t) = CONFIDENCE. With x = sqrt(n) tan(angle) the density becomes cos(angle)^(n - 1), which is summed."""
+    angle = numpy.linspace(0.0, math.pi / 2, 200_001)
+    density = numpy.cos(angle) ** (freedom - 1)
+    share = numpy.concatenate([[0.0], numpy.cumsum((density[1:] + density[:-1]) / 2)])
+    return math.sqrt(freedom) * math.tan(numpy.interp(CONFIDENCE, share / share[-1], angle))
+
+
+def entry(case, name, unit, values):
+    """Mean, standard deviation and interval; the last two are null for a single packing."""
+    mean, several = float(numpy.mean(values)), len(values) > 1
+    deviation = float(numpy.std(values, ddof=1)) if several else None
+    reach = student_factor(len(values) - 1) * deviation / math.sqrt(len(values)) if several else None
+    return {"case": case, "quantity": name, "unit": unit, "packings": len(values), "mean": mean, "standard_deviation": deviation,
+            "lower": mean - reach if several else None, "upper": mean + reach if several else None}
+
+
+def entries(run, packings, temperatures):
+    table = []
+    for temperature in temperatures:
+        for name, unit, factor, kind, number in NUMBERS:
+            values = [factor * number(read_file(run / packing / temperature / f"{kind}.json")[0]) for packing in packings]
+            table.append(entry(temperature, name, unit, values))
+    fits = [read_file(run / packing / "fit.json")[0] for packing in packings]
+    for name in fits[0]["standard_errors"]:
+        factor, unit = (1e-9, "GPa") if name == "E0" else (1.0, "")
+        table.append(entry(f"fit, {fits[0]['law']}", name, unit, [factor * fit[name] for fit in fits]))
+    return table
+
+
+def as_text(table, packings):
+    lines = [f"Means of {packings} packings with their {100 * CONFIDENCE:.0f} % confidence intervals (Student's t)"]
+    for case in dict.fromkeys(each["case"] for each in table):
+        lines += ["", f"{case:26}{'mean':>12}{'interval':>27}{'deviation':>12}"]
+        for each in table:
+            if each["case"] != case:
+                continue
+            name = each["quantity"] + (f", {each['unit']}" if each["unit"] else "")
+            interval = "-" if each["lower"] is None else f"{each['lower']:.5g} … {each['upper']:.5g}"
+            deviation = "-" if each["standard_deviation"] is None else f"{each['standard_deviation']:.3g}"
+            lines.append(f"  {name:24}{each['mean']:12.5g}{interval:>27}{deviation:>12}")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=pathlib.Path, help="folder with PACKING/TEMPERATURE/{density,bonds,modulus}.json and PACKING/fit.json")
+    parser.add_argument("--packings", nargs="+", required=True)
+    parser.add_argument("--temperatures", nargs="+", required=True)
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="table to write; also as .csv and .json")
+    given = parser.parse_args()
+    table = entries(given.run, given.packings, given.temperatures)
+    given.output.with_suffix(".json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    with open(given.output.with_suffix(".csv"), "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, table[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+    given.output.write_text(as_text(table, len(given.packings)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
