@@ -1,0 +1,48 @@
+#!/usr/bin/env bats
+# fired.bats: firings by schedules beside measured densities, and the arithmetic of master sintering curves.
+bats_require_minimum_version 1.5.0
+load helper.bash
+
+setup() { cd "$BATS_FILE_TMPDIR"; }
+
+fired() {
+    make -C "$ROOT/workflows/fired" N=200 OUT="$PWD/fired" GREEN='-n 200 --method affine --compact-to 0.55 --seed 1' "$@"
+}
+
+@test "the paper's firings: a table that says where the kinetics disagree, and a figure" {
+    run -0 fired
+    assert_line --regexp "^ +1100C +0\.[0-9]+ +0\.67 +[0-9]+ C +[0-9.]+"
+    assert_line --regexp "^ +1250C +1\.000 +0\.88 .* \*$"
+    assert_line --partial "sinters too fast"
+    # Hotter firings end denser, and the same programme reaches each measured density at a lower temperature than the furnace did.
+    jq -e '.firings | [.[].relative_density] == ([.[].relative_density] | sort)' fired/fired.json
+    jq -e '.firings | all(.slower_by > 1 and .equivalent_temperature < .temperature)' fired/fired.json
+    [ -s fired/figures/fired.png ]
+}
+
+@test "the master curve of the hottest firing foretells the coolest one" {
+    density=$(jq '.firings[0].relative_density' fired/fired.json)
+    run -0 jq --argjson t 1373.15 '.curve as $c | [range($c.temperature | length - 1)] |
+        map(select($c.temperature[.] <= $t and $t < $c.temperature[. + 1])) | $c.relative_density[.[0]], $c.relative_density[.[0] + 1]' fired/fired.json
+    awk -v d="$density" -v low="${lines[0]}" -v high="${lines[1]}" 'BEGIN { exit !(low - 0.01 <= d && d <= high + 0.01) }' ||
+        fail "$density is not between ${lines[0]} and ${lines[1]}"
+}
+
+@test "a temperature that was sought reaches what it was sought for, holds and rates as written" {
+    run -0 env PYTHONDONTWRITEBYTECODE=1 "$PYTHON" - "$ROOT/workflows/post" <<'END'
+import sys
+sys.path.insert(0, sys.argv[1])
+from fired import programme, temperature_for, theta_along
+time, kelvin = programme("25C 10K/min 1200C 1h 10K/min 25C")
+print(time.tolist(), (kelvin - 273.15).round(9).tolist())
+theta = theta_along(time, kelvin, 475e3)[1][-1]
+print(round(temperature_for("25C 10K/min 1000C 1h 10K/min 25C", theta, 475e3) - 273.15, 6))
+hold = theta_along(*programme("1200C 1h"), 475e3)[1][-1]
+print(1.0 < theta / hold < 1.2)  # heating and cooling at 10 K/min add a few minutes to the hold
+END
+    assert_output $'[0.0, 7050.0, 10650.0, 17700.0] [25.0, 1200.0, 1200.0, 25.0]\n1200.0\nTrue'
+}
+
+@test "a second call makes nothing" {
+    fired SINTER=false ANALYZE=false
+}

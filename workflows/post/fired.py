@@ -1,0 +1,149 @@
+"""fired.py: densities after firings beside measured ones, and how far the kinetics of the model are from those of the furnace.
+
+Only the integral of the diffusion parameter over time, theta, enters the densification of a given packing (master sintering curve: H. Su &
+D. L. Johnson, J. Am. Ceram. Soc. 79 (1996) 3211). The history of the hottest firing gives the density as a function of theta; with it follow
+the density after any other firing, the firing that gives a wanted density, and the factor by which diffusion would have to be slower."""
+import argparse
+import csv
+import json
+import pathlib
+import re
+
+import numpy
+
+from dem_state import read_file
+
+GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+ZERO_CELSIUS = 273.15  # K
+UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}
+VALID = 0.9  # relative density above which the model, without grain growth, says nothing
+POINTS = 4000  # of the quadrature along each part of a schedule
+
+
+def temperature_of(word):
+    found = re.fullmatch(r"([-0-9.]+)([CK])", word)
+    return float(found[1]) + (ZERO_CELSIUS if found[2] == "C" else 0.0) if found else None
+
+
+def programme(schedule, hottest=None):
+    """Times (s) and temperatures (K) along a schedule such as "25C 10K/min 1200C 1h 10K/min 25C"; hottest replaces its highest temperature."""
+    peak = max(value for value in map(temperature_of, schedule.split()) if value is not None)
+    time, kelvin, rate = [0.0], [], None
+    for word in schedule.split():
+        target = temperature_of(word)
+        if target is not None:
+            target = hottest if hottest is not None and target == peak else target
+            if kelvin:
+                time.append(time[-1] + abs(target - kelvin[-1]) / rate)
+            kelvin.append(target)
+        elif found := re.fullmatch(r"([0-9.]+)K/(s|min|h)", word):
+            rate = float(found[1]) / UNITS[found[2]]
+        elif found := re.fullmatch(r"([0-9.]+)(s|min|h)", word):
+            time.append(time[-1] + float(found[1]) * UNITS[found[2]])
+            kelvin.append(kelvin[-1])
+        else:
+            raise SystemExit(f"fired.py: '{word}' of the schedule '{schedule}' is not understood")
+    return numpy.array(time), numpy.array(kelvin)
+
+
+def theta_along(time, kelvin, energy):
+    """Times and the integral of exp(-Q/RT)/T up to them, s/K: theta but for a constant of the material."""
+    fine = numpy.unique(numpy.concatenate([numpy.linspace(a, b, POINTS) for a, b in zip(time[:-1], time[1:])]))
+    hot = numpy.interp(fine, time, kelvin)
+    rate = numpy.exp(-energy / (GAS_CONSTANT * hot)) / hot
+    return fine, numpy.concatenate([[0.0], numpy.cumsum((rate[1:] + rate[:-1]) / 2 * numpy.diff(fine))])
+
+
+def master_curve(run, case, schedule, energy):
+    """Densities and theta of the steps of a firing that densified the packing."""
+    with open(run / case / "history.jsonl", encoding="utf-8") as lines:
+        steps = [json.loads(line) for line in lines]
+    fine, theta = theta_along(*programme(schedule), energy)
+    density = numpy.array([step["relative_density"] for step in steps])
+    reached = numpy.interp([step["time"] for step in steps], fine, theta)
+    rising = numpy.concatenate([[True], (numpy.diff(density) > 0) & (numpy.diff(reached) > 0)])
+    return density[rising], reached[rising]
+
+
+def temperature_for(schedule, theta, energy):
+    """The highest temperature (K) with which the same programme reaches theta."""
+    low, high = 900.0, 2300.0
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if theta_along(*programme(schedule, middle), energy)[1][-1] < theta else (low, middle)
+    return (low + high) / 2
+
+
+def compare(run, schedules, measured):
+    """The firings, and the density of the model against the temperature of the firing."""
+    peak = {case: programme(schedule)[1].max() for case, schedule in schedules.items()}
+    hottest = max(peak, key=peak.get)
+    material = read_file(run / hottest / "fired.kiln")[0]["materials"][0]
+    energy = material["grain_boundary_diffusion"]["activation_energy"]
+    density, theta = master_curve(run, hottest, schedules[hottest], energy)
+    firings = []
+    for case, schedule in sorted(schedules.items(), key=lambda item: peak[item[0]]):
+        state = read_file(run / case / "density.json")[0]
+        entry = {"firing": case, "temperature": peak[case], "relative_density": state["relative_density"], "measured": measured.get(case),
+                 "equivalent_temperature": None, "slower_by": None}
+        if entry["measured"] is not None:
+            needed = float(numpy.exp(numpy.interp(entry["measured"], density, numpy.log(theta))))
+            entry["equivalent_temperature"] = temperature_for(schedule, needed, energy)
+            entry["slower_by"] = theta_along(*programme(schedule), energy)[1][-1] / needed
+        firings.append(entry)
+    grid = numpy.linspace(min(peak.values()) - 100.0, max(peak.values()) + 25.0, 100)
+    reached = [theta_along(*programme(schedules[hottest], kelvin), energy)[1][-1] for kelvin in grid]
+    curve = numpy.interp(numpy.log(reached), numpy.log(theta), density)
+    return {"firings": firings, "activation_energy": energy, "curve": {"temperature": grid.tolist(), "relative_density": curve.tolist()}}
+
+
+def as_text(result):
+    lines = ["Relative densities after the firings of the paper", "",
+             f"{'firing':>8}{'model':>9}{'measured':>10}   {'model reaches the measured one at':>34}   {'diffusion should be slower by':>30}"]
+    for entry in result["firings"]:
+        words = "" if entry["measured"] is None else (f"{entry['measured']:10.2f}   {entry['equivalent_temperature'] - ZERO_CELSIUS:32.0f} C"
+                                                      f"   {entry['slower_by']:30.1f}")
+        lines.append(f"{entry['firing']:>8}{entry['relative_density']:9.3f}{words}" + ("   *" if entry["relative_density"] > VALID else ""))
+    known = [entry for entry in result["firings"] if entry["slower_by"]]
+    lines += ["", f"* above {VALID}: outside of what the model can say, for it has no grain growth."]
+    if len(known) > 1:
+        first, last = known[0], known[-1]
+        slope = numpy.polyfit([1 / entry["temperature"] for entry in known], [numpy.log(entry["slower_by"]) for entry in known], 1)[0]
+        apparent = result["activation_energy"] + slope * GAS_CONSTANT
+        lines += ["", f"With the published diffusion data the model sinters too fast: {first['slower_by']:.1f} times at {first['firing']}, "
+                  f"{last['slower_by']:.0f} times at {last['firing']}.",
+                  f"The measured densities rise more slowly with temperature than one activated process of {result['activation_energy'] / 1e3:.0f} "
+                  f"kJ/mol allows; read as a",
+                  f"master sintering curve of this packing they have an apparent activation energy of {apparent / 1e3:.0f} kJ/mol.",
+                  "Densities may be compared with experiments, times and temperatures may not. What the model leaves out acts in this direction:",
+                  "grains grow in the last stage, the powder has agglomerates and a spread of sizes, and surface diffusion coarsens it while heating."]
+    return "\n".join(lines) + "\n"
+
+
+def read_measured(path):
+    with open(path, encoding="utf-8") as stream:
+        rows = csv.DictReader(line for line in stream if not line.startswith("#"))
+        return {row["firing"]: float(row["relative_density"]) for row in rows}
+
+
+def read_schedule(path):
+    found = re.search(r'^schedule *= *"([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
+    if not found:
+        raise SystemExit(f"fired.py: {path}: has no schedule")
+    return found[1]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=pathlib.Path, help="folder with FIRING/{fired.kiln,density.json,history.jsonl}")
+    parser.add_argument("--firings", nargs="+", type=pathlib.Path, required=True, help="case files with the schedules")
+    parser.add_argument("--measured", required=True, help="table of measured densities")
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="text to write; also as .json")
+    given = parser.parse_args()
+    result = compare(given.run, {path.stem: read_schedule(path) for path in given.firings}, read_measured(given.measured))
+    given.output.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    given.output.write_text(as_text(result), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
