@@ -3,7 +3,7 @@ BUILD_PACKAGES  := g++ libeigen3-dev libcli11-dev nlohmann-json3-dev libboost-de
 TEST_PACKAGES   := doctest-dev bats bats-support bats-assert jq
 PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio
 # Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip without.
-NEIGHBOUR_PACKAGES := python3-vtk9 chromium snakemake
+NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
 PACKAGES := $(BUILD_PACKAGES) $(TEST_PACKAGES) $(PICTURE_PACKAGES)
 
 # Installs those of $(1) that are missing. As root nothing is asked; otherwise sudo is used.

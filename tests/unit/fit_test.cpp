@@ -148,8 +148,8 @@ TEST_CASE("fit: Student's factors of the tables") {
     CHECK(student_factor(30, 0.99) == Approx(2.750).epsilon(1e-4));
 }
 
-// Each curve states a 95 % interval. Of 100 seeds the modulus must lie in it about 95 times; this count has a standard deviation of 2.2, so
-// the seeds are many, and the share is asked for within three of its own standard deviations.
+// Each curve states a 95 % interval. Of 100 seeds the modulus must lie in it about 95 times; this count has a standard deviation
+// of 2.2, so the seeds are many, and the share is asked for within three of its own standard deviations.
 TEST_CASE("fit: the modulus of a noisy unloading lies in its 95 % interval in 95 of 100 cases") {
     constexpr int trials = 2000, points = 12;
     constexpr double slope = 1e6;

@@ -18,7 +18,8 @@ constexpr const char* footer =
     "Keys: relative_density, particles, count, mean_diameter (m), mean_length (m), bond_volume_fraction (share of the solid "
     "that is in bonds), histogram of the radii {edges (m), counts}.\n"
     "Where the bonds carry forces, as in the states that bend writes: normal_force (N), normal_stress (force over section, Pa) and "
-    "fibre_stress (with the moment as if it only bent the bond, Pa) {mean, standard_deviation, minimum, maximum}, tension positive; "
+    "fibre_stress (with the moment as if it only bent the bond, Pa) {mean, standard_deviation, minimum, maximum}, tension "
+    "positive; "
     "compressed_fraction (share of bonds), force_histogram.\n"
     "Examples:\n"
     "  analyze bonds --table bonded.kiln\n"
@@ -48,7 +49,8 @@ void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
         if (area == 0.0) continue;
         stress.push_back((*force)[bond] / area);
         if (!moment) continue;
-        // Outer fibre of a round beam, M R/I with I = A R^2/4 (D. Potyondy & P. Cundall, Int. J. Rock Mech. 41 (2004) 1329, eq. 17).
+        // Outer fibre of a round beam, M R/I with I = A R^2/4 (D. Potyondy & P. Cundall, Int. J. Rock Mech. 41 (2004) 1329, eq.
+        // 17).
         const double* turn = moment->data() + 3 * bond;
         fibre.push_back(stress.back() + 4.0 * std::hypot(turn[0], turn[1], turn[2]) / (area * radius));
     }

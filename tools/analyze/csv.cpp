@@ -78,8 +78,10 @@ CsvTable::CsvTable(const std::string& file) : file_(file) {
         }
         const std::vector<std::string> row = fields(line, separator);
         if (row.size() != headings_.size())
-            throw Error(place + ": has " + std::to_string(row.size()) + " columns, the heading has " + std::to_string(headings_.size()));
-        for (std::size_t column = 0; column < row.size(); ++column) columns_[column].push_back(number_of(row[column], separator, place));
+            throw Error(place + ": has " + std::to_string(row.size()) + " columns, the heading has " +
+                        std::to_string(headings_.size()));
+        for (std::size_t column = 0; column < row.size(); ++column)
+            columns_[column].push_back(number_of(row[column], separator, place));
     }
     if (stream.bad()) throw Error(file + ": cannot be read");
     if (headings_.empty() || columns_.front().empty()) throw Error(file + ": has no rows of numbers");
@@ -90,7 +92,8 @@ std::optional<std::vector<double>> CsvTable::column(const std::vector<std::strin
     for (std::size_t column = 0; column < headings_.size(); ++column) {
         const std::string heading = lower(headings_[column]);
         if (std::ranges::none_of(names, [&](const std::string& name) { return heading.starts_with(name); })) continue;
-        if (found) throw Error(file_ + ": the columns '" + headings_[*found] + "' and '" + headings_[column] + "' may both be meant");
+        if (found)
+            throw Error(file_ + ": the columns '" + headings_[*found] + "' and '" + headings_[column] + "' may both be meant");
         found = column;
     }
     if (!found) return std::nullopt;

@@ -9,9 +9,9 @@
 
 namespace kiln::analyze {
 
-/// A table read from text: one heading, then rows of numbers. Columns are separated by semicolons, tabs or commas, whichever the heading
-/// has first in this order; with semicolons or tabs a decimal comma is understood. Lines that begin with # are remarks.
-/// A heading is a name and a unit: "Force (N)", "force [mN]", "Kraft/N", "deflection_um".
+/// A table read from text: one heading, then rows of numbers. Columns are separated by semicolons, tabs or commas, whichever the
+/// heading has first in this order; with semicolons or tabs a decimal comma is understood. Lines that begin with # are remarks. A
+/// heading is a name and a unit: "Force (N)", "force [mN]", "Kraft/N", "deflection_um".
 class CsvTable {
    public:
     /// Throws Error naming file and line for a file that cannot be read, a row of another length, or what is no number.

@@ -18,10 +18,13 @@ namespace {
 constexpr const char* footer =
     "Keys: time (s), relative_density, measure, particles, coordination_number (contacts per particle), mean_overlap_ratio (h/2R, "
     "or h/(r1 + r2) for unequal spheres), overlap_ratio and diameter (m) {mean, standard_deviation, minimum, maximum}, "
-    "clusters (groups that hang together, single particles included), largest_cluster_fraction, isolated (particles without a contact), "
-    "fabric_tensor (mean of n n over the directions n of the contacts; 1/3 on the diagonal without texture), fabric_anisotropy (largest "
+    "clusters (groups that hang together, single particles included), largest_cluster_fraction, isolated (particles without a "
+    "contact), "
+    "fabric_tensor (mean of n n over the directions n of the contacts; 1/3 on the diagonal without texture), fabric_anisotropy "
+    "(largest "
     "less smallest principal value). Contacts are overlaps, or the bonds of a state that has them (overlap 0).\n"
-    "With --bins: diameter_histogram, overlap_histogram {edges, counts}. With --correlation: pair_correlation {distance (m), g, centres}.\n"
+    "With --bins: diameter_histogram, overlap_histogram {edges, counts}. With --correlation: pair_correlation {distance (m), g, "
+    "centres}.\n"
     "measure says which volume the density refers to. box: of a periodic state. inner, for a state with a free axis: between the "
     "outermost centres, one mean diameter inwards; a particle counts if its centre is inside, with half of each of its bonds. "
     "envelope: what a ball rolling over the outside cannot enter, as grains of an envelope pycnometer. "
@@ -59,9 +62,11 @@ struct Options {
             ->default_str("auto");
         cli::add_quantity(app, "--probe-radius", probe, cli::Dimension::length, "radius of the ball that feels the envelope",
                           "the mean diameter");
-        app.add_option("--bins", bins, "also histograms of diameters and overlaps, with so many bins")->check(CLI::Range(1, 1000000));
+        app.add_option("--bins", bins, "also histograms of diameters and overlaps, with so many bins")
+            ->check(CLI::Range(1, 1000000));
         auto* wanted = app.add_flag("--correlation", correlation, "also the pair correlation function g(r)");
-        cli::add_quantity(app, "--range", range, cli::Dimension::length, "largest distance of g(r)", "four mean diameters")->needs(wanted);
+        cli::add_quantity(app, "--range", range, cli::Dimension::length, "largest distance of g(r)", "four mean diameters")
+            ->needs(wanted);
         app.add_option("--shells", correlation_bins, "number of shells of g(r)")
             ->check(CLI::Range(1, 1000000))
             ->capture_default_str()

@@ -140,10 +140,10 @@ std::vector<char> reached_from_outside(const Grid& grid, const std::vector<float
     return reached;
 }
 
-/// Square of the distance (m2) of each point from the farthest places that the ball's centre reaches, where its distance from the body
-/// becomes `probe` between two points; larger than `far` squared where there is none as near.
-std::vector<float> squares_from_front(const Grid& grid, const std::vector<float>& distance, const std::vector<char>& reached, double probe,
-                                      double far) {
+/// Square of the distance (m2) of each point from the farthest places that the ball's centre reaches, where its distance from the
+/// body becomes `probe` between two points; larger than `far` squared where there is none as near.
+std::vector<float> squares_from_front(const Grid& grid, const std::vector<float>& distance, const std::vector<char>& reached,
+                                      double probe, double far) {
     std::vector<float> squares(grid.size(), static_cast<float>(4.0 * far * far));
     for (std::size_t point = 0; point < grid.size(); ++point) {
         if (!reached[point]) continue;
@@ -178,7 +178,8 @@ double envelope_volume(const State& state, double probe) {
     const std::vector<float> squares = squares_from_front(grid, distance, reached, probe, probe + spacing);
     double points = 0.0;  // in the envelope; those on its surface count by the share of their cell
     for (std::size_t point = 0; point < grid.size(); ++point)
-        if (!reached[point]) points += std::clamp((std::sqrt(static_cast<double>(squares[point])) - probe) / spacing + 0.5, 0.0, 1.0);
+        if (!reached[point])
+            points += std::clamp((std::sqrt(static_cast<double>(squares[point])) - probe) / spacing + 0.5, 0.0, 1.0);
     return points * grid.step.prod();
 }
 

@@ -16,12 +16,14 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Reads dem-modulus documents (and dem-elastic ones) and tables FILE.csv, all of them for one fit; P = 1 - relative density is the porosity. "
+    "Reads dem-modulus documents (and dem-elastic ones) and tables FILE.csv, all of them for one fit; P = 1 - relative density is "
+    "the porosity. "
     "A table has the columns relative_density (or porosity), young_modulus and, if there is one, standard_error, such as "
     "'relative_density,young_modulus (GPa)'. Several laws give a document each, the best by AICc first.\n"
-    "Keys: law, formula, source, E0 (Pa), b or Pc, standard_errors, confidence_intervals (95 %, Student's t), covariance, points, residuals "
-    "(Pa, measured minus law), r_squared, aic, aicc, weighting, degrees_of_freedom, band {relative_density, young_modulus, and 95 % "
-    "intervals (Pa) of the law, confidence, and of one more point, prediction}, references (curves of the literature at the same densities). "
+    "Keys: law, formula, source, E0 (Pa), b or Pc, standard_errors, confidence_intervals (95 %, Student's t), covariance, points, "
+    "residuals (Pa, measured minus law), r_squared, aic, aicc, weighting, degrees_of_freedom, band {relative_density, "
+    "young_modulus, and 95 % intervals (Pa) of the law, confidence, and of one more point, prediction}, references (curves of the "
+    "literature at the same densities). "
     "The scatter of the points about the law sets the scale of all errors; with as many points as "
     "parameters there is none, and the errors are null.\n"
     "Examples:\n"
@@ -66,9 +68,13 @@ void add_band(Json& result, const Law& law, const Fit& fit, const Points& points
     double mean_weight = 0.0;
     for (const double each : weight) mean_weight += each / static_cast<double>(weight.size());
     const double lowest = 0.05 * std::floor(20.0 * (1.0 - std::ranges::max(points.porosity)));
-    Json density = Json::array(), modulus = Json::array(), certain = Json::array(), predicted = Json::array(), curves = Json::array();
+    Json density = Json::array(), modulus = Json::array(), certain = Json::array(), predicted = Json::array(),
+         curves = Json::array();
     for (const Reference& reference : references())
-        curves.push_back({{"name", reference.name}, {"formula", reference.formula}, {"source", reference.source}, {"young_modulus", Json::array()}});
+        curves.push_back({{"name", reference.name},
+                          {"formula", reference.formula},
+                          {"source", reference.source},
+                          {"young_modulus", Json::array()}});
     for (int step = 0; step <= steps; ++step) {
         const double porosity = (1.0 - lowest) * (1.0 - step / static_cast<double>(steps));
         const double value = law.modulus(porosity, fit.parameters);
@@ -76,7 +82,8 @@ void add_band(Json& result, const Law& law, const Fit& fit, const Points& points
         modulus.push_back(value);
         for (std::size_t curve = 0; curve < references().size(); ++curve) {
             const Reference& reference = references()[curve];
-            curves[curve]["young_modulus"].push_back(porosity <= reference.largest_porosity ? Json(reference.modulus(porosity)) : Json());
+            curves[curve]["young_modulus"].push_back(porosity <= reference.largest_porosity ? Json(reference.modulus(porosity))
+                                                                                            : Json());
         }
         if (!fit.covariance) continue;
         const double error = error_at(law, fit, porosity);
@@ -101,7 +108,11 @@ Json overlay_json(const Law& law, const Fit& fit, const Points& data) {
 }
 
 Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_errors) {
-    Json result{{"format", "dem-fit"}, {"version", io::format_version}, {"law", law.name}, {"formula", law.formula}, {"source", law.source}};
+    Json result{{"format", "dem-fit"},
+                {"version", io::format_version},
+                {"law", law.name},
+                {"formula", law.formula},
+                {"source", law.source}};
     Json errors, intervals;
     for (std::size_t k = 0; k < law.parameters.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
@@ -109,7 +120,8 @@ Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_erro
         result[name] = fit.parameters[k];
         errors[name] = intervals[name] = Json();
         if (!fit.covariance) continue;
-        const double error = std::sqrt((*fit.covariance)(row, row)), reach = student_factor(fit.degrees_of_freedom, confidence) * error;
+        const double error = std::sqrt((*fit.covariance)(row, row)),
+                     reach = student_factor(fit.degrees_of_freedom, confidence) * error;
         errors[name] = error;
         intervals[name] = {fit.parameters[k] - reach, fit.parameters[k] + reach};
     }
@@ -136,7 +148,8 @@ std::vector<Column> columns_of(const std::vector<const Law*>& wanted) {
             columns.push_back({parameter.name, parameter.name, parameter.unit});
             columns.push_back({error_key(parameter), "its error", parameter.unit});
         }
-    columns.insert(columns.end(), {{"count", "points", ""}, {"weighting", "weighting", ""}, {"r_squared", "R2", ""}, {"aicc", "AICc", ""}});
+    columns.insert(columns.end(),
+                   {{"count", "points", ""}, {"weighting", "weighting", ""}, {"r_squared", "R2", ""}, {"aicc", "AICc", ""}});
     return columns;
 }
 
@@ -193,7 +206,8 @@ void Options::add_to(CLI::App& app) {
            "has one above 1e-6 of it, else equal")
         ->check(CLI::IsMember(weightings))
         ->default_str("auto");
-    app.add_option("--data", data, "measurements that are not fitted, to lie beside the fit: a table as above")->type_name("FILE.csv");
+    app.add_option("--data", data, "measurements that are not fitted, to lie beside the fit: a table as above")
+        ->type_name("FILE.csv");
     add_table(app, table);
 }
 

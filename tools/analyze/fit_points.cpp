@@ -27,14 +27,15 @@ void add_table_points(Points& points, const std::string& file) {
         porosity = table.required({"relative_density", "relative density", "density"}, cli::Dimension::none);
         for (double& value : *porosity) value = 1.0 - value;
     }
-    const std::vector<double> modulus = table.required({"young_modulus", "young's modulus", "young modulus", "modulus", "e (", "e_"},
-                                                       cli::Dimension::pressure);
+    const std::vector<double> modulus =
+        table.required({"young_modulus", "young's modulus", "young modulus", "modulus", "e (", "e_"}, cli::Dimension::pressure);
     const auto error = table.column({"standard_error", "standard error", "error"}, cli::Dimension::pressure);
     for (std::size_t row = 0; row < modulus.size(); ++row) {
         const std::string place = file + ", row " + std::to_string(row + 1);
         if (!((*porosity)[row] >= 0.0 && (*porosity)[row] < 1.0))
             throw Error(place + ": the porosity is " + Json((*porosity)[row]).dump() + ", wanted 0 or more and less than 1");
-        if (!(modulus[row] > 0.0)) throw Error(place + ": the modulus is " + Json(modulus[row]).dump() + " Pa, wanted a positive number");
+        if (!(modulus[row] > 0.0))
+            throw Error(place + ": the modulus is " + Json(modulus[row]).dump() + " Pa, wanted a positive number");
         if (error && (*error)[row] < 0.0) throw Error(place + ": the standard error is negative");
         points.porosity.push_back((*porosity)[row]);
         points.modulus.push_back(modulus[row]);

@@ -7,7 +7,8 @@
 
 namespace kiln::analyze {
 
-/// {edges, counts} of bins of equal width from `lower` to the largest value, which belongs to the last bin; no value is below `lower`.
+/// {edges, counts} of bins of equal width from `lower` to the largest value, which belongs to the last bin; no value is below
+/// `lower`.
 Json histogram_of(std::span<const double> values, std::size_t bins, double lower);
 
 /// {mean, standard_deviation (of the values themselves), minimum, maximum}; null without values.

@@ -11,13 +11,15 @@ namespace {
 /// The row in `second` of each particle of `first`.
 std::vector<std::size_t> matched_rows(const Particles& first, const Particles& second) {
     if (first.size() != second.size())
-        throw Error("the states differ: one has " + std::to_string(first.size()) + " particles, the next " + std::to_string(second.size()));
+        throw Error("the states differ: one has " + std::to_string(first.size()) + " particles, the next " +
+                    std::to_string(second.size()));
     std::unordered_map<std::int64_t, std::size_t> row_of;
     for (std::size_t row = 0; row < second.size(); ++row) row_of[second.id[row]] = row;
     std::vector<std::size_t> rows;
     for (const std::int64_t id : first.id) {
         const auto found = row_of.find(id);
-        if (found == row_of.end()) throw Error("the states differ: particle " + std::to_string(id) + " is in one and not in the next");
+        if (found == row_of.end())
+            throw Error("the states differ: particle " + std::to_string(id) + " is in one and not in the next");
         rows.push_back(found->second);
     }
     return rows;

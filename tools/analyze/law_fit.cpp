@@ -133,7 +133,8 @@ Fit fit_law(const Law& law, Values porosity, Values modulus, Values weight) {
 double error_at(const Law& law, const Fit& fit, double porosity) {
     VectorXd gradient(static_cast<Eigen::Index>(fit.parameters.size()));
     for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-        const double step = 1e-5 * (fit.parameters[k] == 0.0 ? 1.0 : std::abs(fit.parameters[k]));  // central differences: 1e-10 is left
+        const double step =
+            1e-5 * (fit.parameters[k] == 0.0 ? 1.0 : std::abs(fit.parameters[k]));  // central differences: 1e-10 is left
         std::vector<double> above(fit.parameters), below(fit.parameters);
         above[k] += step;
         below[k] -= step;

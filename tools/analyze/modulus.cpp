@@ -18,13 +18,15 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Reads dem-bend documents and files FILE.csv of experiments, writes dem-modulus documents. The slope S of force against deflection is that "
-    "of the least squares line through the last unloading, as far as its force lies in the window; "
+    "Reads dem-bend documents and files FILE.csv of experiments, writes dem-modulus documents. The slope S of force against "
+    "deflection is that of the least squares line through the last unloading, as far as its force lies in the window; "
     "E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].\n"
-    "A CSV has a heading with units, such as 'deflection (mm),force (N)' (also displacement, and punch for the travel of the machine); --span, "
-    "--width and --height are needed with it, --density if its modulus is to be fitted. With a dem-bend document they replace its own.\n"
-    "Keys: young_modulus (Pa), standard_error (Pa; null for two points), confidence_interval (95 %, Student's t; null likewise), slope (N/m), "
-    "relative_density, shear_correction (the bracket), compliance (m/N), window, points, and bond_law and method of the test. The error says "
+    "A CSV has a heading with units, such as 'deflection (mm),force (N)' (also displacement, and punch for the travel of the "
+    "machine); --span, --width and --height are needed with it, --density if its modulus is to be fitted. With a dem-bend document they replace its "
+    "own.\n"
+    "Keys: young_modulus (Pa), standard_error (Pa; null for two points), confidence_interval (95 %, Student's t; null likewise), "
+    "slope (N/m), relative_density, shear_correction (the bracket), compliance (m/N), window, points, and bond_law and method of the test. The "
+    "error says "
     "how straight the curve is, not how much packings or specimens differ.\n"
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus --table\n"
@@ -48,7 +50,8 @@ struct Options {
 };
 
 /// An option that stays empty unless it is given, and must be positive then.
-void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, cli::Dimension dimension, const std::string& help) {
+void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, cli::Dimension dimension,
+                  const std::string& help) {
     const std::string known = cli::known_units(dimension);
     app.add_option_function<std::string>(
            name,
@@ -70,11 +73,13 @@ void Options::add_to(CLI::App& app) {
     add_optional(app, "--width", width, Dimension::length, "width of the bar");
     add_optional(app, "--height", height, Dimension::length, "height of the bar, along the load");
     add_optional(app, "--density", density, Dimension::none, "relative density of the specimen");
-    add_optional(app, "--poisson-ratio", poisson_ratio, Dimension::none, "Poisson's ratio in the shear correction (default 0.23 for a CSV)");
+    add_optional(app, "--poisson-ratio", poisson_ratio, Dimension::none,
+                 "Poisson's ratio in the shear correction (default 0.23 for a CSV)");
     cli::add_quantity(app, "--compliance", compliance, Dimension::compliance,
                       "deflection of machine and fixture per force, taken off the measured deflection", "0");
     app.add_option_function<std::string>(
-           "--shear", [this](const std::string& text) { shear = text == "timoshenko"; }, "timoshenko: with the bracket; none: without")
+           "--shear", [this](const std::string& text) { shear = text == "timoshenko"; },
+           "timoshenko: with the bracket; none: without")
         ->check(CLI::IsMember({"timoshenko", "none"}))
         ->default_str("timoshenko");
 }
@@ -134,7 +139,8 @@ std::pair<Line, std::size_t> unloading_line(const Curve& curve, const Options& o
 /// A size of the specimen: the option's, else the document's.
 double size_of(const io::Document& document, const std::string& key, const std::optional<double>& given) {
     if (given) return *given;
-    if (is_csv(document.place) && !document.header.contains(key)) throw Error(document.place + ": --" + key + " is needed with a CSV");
+    if (is_csv(document.place) && !document.header.contains(key))
+        throw Error(document.place + ": --" + key + " is needed with a CSV");
     return positive_at(document, key);
 }
 

@@ -69,7 +69,8 @@ void Report::finish() {
     output_.commit();
 }
 
-int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns, const std::function<Json(io::Document)>& convert,
+int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns,
+                const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table) {
     cli::Common common;
     bool table = false;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* footer =
     "The stream is read once; for every wanted value the nearest state (of equally near ones the first) is written, in the order "
-    "asked. With --interpolate it is a state between the first two neighbours in the stream that have the wanted value between them; they "
+    "asked. With --interpolate it is a state between the first two neighbours in the stream that have the wanted value between "
+    "them; they "
     "must hold the same particles, by id. Time, box, positions and radii are linear in between; a density is met exactly in a "
     "periodic box.\n"
     "Examples:\n"
@@ -88,10 +89,12 @@ struct Place {
     std::shared_ptr<const State> state;
 };
 
-/// The state at a wanted value between two neighbours: linear in time and index, sought by bisection for the density of a periodic box.
+/// The state at a wanted value between two neighbours: linear in time and index, sought by bisection for the density of a periodic
+/// box.
 State between(const Place& first, const Place& second, double wanted, const Options& options) {
     double share = (wanted - first.value) / (second.value - first.value);
-    if (options.density.empty() || measured_density(*first.state).measure != "box") return interpolated(*first.state, *second.state, share);
+    if (options.density.empty() || measured_density(*first.state).measure != "box")
+        return interpolated(*first.state, *second.state, share);
     constexpr int halvings = 40;  // 1e-12 of the way
     double low = 0.0, high = 1.0;
     for (int halving = 0; halving < halvings; ++halving) {
@@ -138,7 +141,8 @@ std::size_t read(io::Input& input, const Options& options, std::vector<Choice>& 
 /// Refuses what cannot be given and warns of what is far from what was wanted.
 void check(const Choice& choice, const Options& options, std::size_t states, bool quiet) {
     if (!choice.state && options.interpolate)
-        throw Error("no two states of the stream have " + std::string(options.key()) + " " + Json(choice.wanted).dump() + " between them");
+        throw Error("no two states of the stream have " + std::string(options.key()) + " " + Json(choice.wanted).dump() +
+                    " between them");
     if (!choice.state) throw Error("no state of the stream has a measurable density");
     if (!options.index.empty() && choice.distance > 0.0)
         throw Error("there is no state " + std::to_string(static_cast<std::size_t>(choice.wanted)) + ", the stream has " +

@@ -52,7 +52,8 @@ std::vector<std::size_t> cluster_sizes(std::size_t particles, const std::vector<
     Clusters clusters(particles);
     for (const Pair& pair : contacts) clusters.join(pair.i, pair.j);
     std::vector<std::size_t> members(particles);
-    for (std::int32_t row = 0; row < static_cast<std::int32_t>(particles); ++row) ++members[static_cast<std::size_t>(clusters.root(row))];
+    for (std::int32_t row = 0; row < static_cast<std::int32_t>(particles); ++row)
+        ++members[static_cast<std::size_t>(clusters.root(row))];
     std::erase(members, 0);
     std::ranges::sort(members, std::greater());
     return members;
@@ -100,7 +101,8 @@ Density inner_density(const State& state) {
         const Vec3& position = state.particles.position[row];
         bool inside = true;  // along a periodic axis a particle may lie outside the box and is inside the body all the same
         for (int axis = 0; axis < 3; ++axis)
-            inside = inside && (state.box.periodic[static_cast<std::size_t>(axis)] || (position[axis] >= lower[axis] && position[axis] <= upper[axis]));
+            inside = inside && (state.box.periodic[static_cast<std::size_t>(axis)] ||
+                                (position[axis] >= lower[axis] && position[axis] <= upper[axis]));
         if (inside) solid += solids[row];
     }
     return {solid / volume, "inner"};

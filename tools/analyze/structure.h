@@ -30,14 +30,14 @@ enum class Measure { automatic, box, inner, envelope };
 
 struct Density {
     std::optional<double> value;  // solid over total volume
-    std::string measure;          // what volume: "box", "inner", "envelope", or "none" where the body is too small to have an inside
+    std::string measure;  // what volume: "box", "inner", "envelope", or "none" where the body is too small to have an inside
 };
 
 /// Relative density, bonds included.
-/// box: the volume of the box. inner: along the free axes the region between the outermost centres less a mean diameter on either side, at
-/// least three mean diameters wide; a particle counts whole if its centre is inside, a bond by halves with its particles. envelope: see
-/// envelope.h; probe is the radius of its ball, m, zero for the mean diameter.
-/// automatic: box for a state periodic along all axes, else inner. Throws Error for an envelope of a state without a free axis.
+/// box: the volume of the box. inner: along the free axes the region between the outermost centres less a mean diameter on either
+/// side, at least three mean diameters wide; a particle counts whole if its centre is inside, a bond by halves with its particles.
+/// envelope: see envelope.h; probe is the radius of its ball, m, zero for the mean diameter. automatic: box for a state periodic
+/// along all axes, else inner. Throws Error for an envelope of a state without a free axis.
 Density measured_density(const State& state, Measure measure = Measure::automatic, double probe = 0.0);
 
 }  // namespace kiln::analyze

@@ -14,8 +14,8 @@ struct Branch {
     std::size_t first, last;
 };
 
-/// The last stretch of the test in which the travel of the punch (m) goes back by more than 2 % of its whole way, from its highest to its
-/// lowest point; nothing if it never does.
+/// The last stretch of the test in which the travel of the punch (m) goes back by more than 2 % of its whole way, from its highest
+/// to its lowest point; nothing if it never does.
 std::optional<Branch> last_unloading(std::span<const double> travel);
 
 /// Share of the peak force between which the slope is taken.

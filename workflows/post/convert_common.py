@@ -106,7 +106,11 @@ def joined_columns(columns):
 
 def box_of(low, high, periodic):
     """The box between two corners, m."""
-    return {"origin": [float(x) for x in low], "vectors": numpy.diag(numpy.subtract(high, low)).tolist(), "periodic": [bool(p) for p in periodic]}
+    return {
+        "origin": [float(x) for x in low],
+        "vectors": numpy.diag(numpy.subtract(high, low)).tolist(),
+        "periodic": [bool(p) for p in periodic]
+    }
 
 
 def bounds(box):
@@ -121,7 +125,7 @@ def periodic_axes(box):
 
 def free_box(position, radius):
     """A box that just holds a body without periodic faces."""
-    return box_of((position - radius[:, None]).min(axis=0), (position + radius[:, None]).max(axis=0), (False,) * 3)
+    return box_of((position - radius[:, None]).min(axis=0), (position + radius[:, None]).max(axis=0), (False, ) * 3)
 
 
 def state(box, particles, time=0.0):
@@ -144,7 +148,7 @@ def bond_arrays(document):
         return None
     bonds = dict(document["bonds"])
     bonds.setdefault("image", numpy.zeros((len(bonds["radius"]), 3), numpy.int8))
-    bonds.setdefault("volume", math.pi * bonds["radius"] ** 2 * bonds["length"].clip(min=0))
+    bonds.setdefault("volume", math.pi * bonds["radius"]**2 * bonds["length"].clip(min=0))
     return bonds
 
 
@@ -161,7 +165,7 @@ def neck_length(document, pair, image, radius):
     low, high = bounds(document["box"])
     position, size = document["particles"]["position"], document["particles"]["radius"]
     distance = numpy.linalg.norm(position[pair[:, 1]] + image * (high - low) - position[pair[:, 0]], axis=1)
-    caps = [numpy.sqrt(numpy.maximum(size[pair[:, end]] ** 2 - radius**2, 0.0)) for end in (0, 1)]
+    caps = [numpy.sqrt(numpy.maximum(size[pair[:, end]]**2 - radius**2, 0.0)) for end in (0, 1)]
     return distance - caps[0] - caps[1]
 
 

@@ -1,15 +1,15 @@
-"""convert_lammps.py: LAMMPS data files (atom styles sphere and bpm/sphere, bonds) and text dumps, of particles and of bonds (dump local).
+"""convert_lammps.py: LAMMPS data files (atom styles sphere and bpm/sphere, bonds) and text dumps, of particles and of bonds.
 
-A data file knows neither periodic axes nor the size of a bond. The first line, which LAMMPS skips, says units, boundary and time; behind
-each bond stands a remark with its radius, length, volume (m, m3) and periodic image."""
+A data file knows neither periodic axes nor the size of a bond. The first line, which LAMMPS skips, says units, boundary and time;
+behind each bond stands a remark with its radius, length, volume (m, m3) and periodic image."""
 import os
 import re
 
 import numpy
 
 from convert_common import (ConvertError, LENGTHS, SMALL, LARGE, TIMES, beside, bond_arrays, bounds, box_of, joined_columns,
-                            nearest_image, neck_length, number, opened, particle_arrays, periodic_axes, rows_of, series, split_columns,
-                            state, warn, whole, written)
+                            nearest_image, neck_length, number, opened, particle_arrays, periodic_axes, rows_of, series,
+                            split_columns, state, warn, whole, written)
 
 ATOM_COLUMNS = {  # of the styles that know a diameter
     "sphere": ("id", "type", "diameter", "density", "x", "y", "z"),
@@ -92,7 +92,7 @@ def sections_of(lines, path):
 
 
 def bonds_of_section(document, rows, ids, path, given):
-    """The bonds of a data file; what the remarks behind them do not say comes from --bond-radius and the places of the particles."""
+    """The bonds of a data file; what the remarks behind them do not say comes from --bond-radius and the particles' places."""
     pair = rows_of(ids, [(whole(words[2], place), whole(words[3], place)) for place, words, _ in rows], path)
     told = [dict(re.findall(r"(radius|length|volume)\s+(\S+)", remark)) for _, _, remark in rows]
     images = [re.search(r"image\s+(-?\d+)\s+(-?\d+)\s+(-?\d+)", remark) for _, _, remark in rows]
@@ -132,15 +132,21 @@ def read_data(path, given):
         if len(words) not in (len(names), len(names) + 3):
             raise ConvertError(f"{place}: has {len(words)} columns, atom style {style} has {len(names)} and perhaps 3 image flags")
     column = {name: [words[k] for _, words, _ in rows] for k, name in enumerate(names)}
-    value = {name: numpy.array([number(text, rows[k][0]) for k, text in enumerate(column[name])]) for name in ("x", "y", "z", "diameter")}
+    value = {
+        name: numpy.array([number(text, rows[k][0]) for k, text in enumerate(column[name])])
+        for name in ("x", "y", "z", "diameter")
+    }
     boundary = re.search(r"boundary (\w) (\w) (\w)", head)
     periodic = [axis == "p" for axis in (given.boundary or (boundary.groups() if boundary else "ppp"))]
     low, high = zip(*(limits[axis] for axis in "xyz"))
     ids = numpy.array([whole(text, rows[k][0]) for k, text in enumerate(column["id"])], numpy.int64)
-    document = state(box_of(numpy.multiply(low, length), numpy.multiply(high, length), periodic), {
-        "id": ids, "position": length * numpy.column_stack([value[axis] for axis in "xyz"]), "radius": length * value["diameter"] / 2,
-        "material": numpy.array([whole(text, rows[k][0]) - 1 for k, text in enumerate(column["type"])], numpy.int32)},
-        float((re.search(r"time (\S+) s", head) or (0, 0.0))[1]))
+    document = state(
+        box_of(numpy.multiply(low, length), numpy.multiply(high, length), periodic), {
+            "id": ids,
+            "position": length * numpy.column_stack([value[axis] for axis in "xyz"]),
+            "radius": length * value["diameter"] / 2,
+            "material": numpy.array([whole(text, rows[k][0]) - 1 for k, text in enumerate(column["type"])], numpy.int32)
+        }, float((re.search(r"time (\S+) s", head) or (0, 0.0))[1]))
     if "Bonds" in sections:
         document["bonds"] = bonds_of_section(document, sections["Bonds"][1], ids, path, given)
     yield document
@@ -167,8 +173,9 @@ def write_dump(path, documents, given):
             particles = particle_arrays(document)
             other = split_columns(particles, SMALL)
             names = ["id", "type", "x", "y", "z", "radius", *other]
-            write_frame(stream, document, frame, "ATOMS", names, [particles["id"], particles["material"] + 1, *particles["position"].T,
-                                                                 particles["radius"], *other.values()])
+            write_frame(
+                stream, document, frame, "ATOMS", names,
+                [particles["id"], particles["material"] + 1, *particles["position"].T, particles["radius"], *other.values()])
     if not any("bonds" in document for document in documents):
         return
     if path == "-":
@@ -181,8 +188,9 @@ def write_dump(path, documents, given):
                 continue
             other = split_columns(bonds, LARGE)
             names = ["batom1", "batom2", "ix", "iy", "iz", "radius", "length", "volume", *other]
-            write_frame(stream, document, frame, "ENTRIES", names, [*ids[bonds["pair"]].T, *bonds["image"].T, bonds["radius"], bonds["length"],
-                                                                    bonds["volume"], *other.values()])
+            write_frame(
+                stream, document, frame, "ENTRIES", names,
+                [*ids[bonds["pair"]].T, *bonds["image"].T, bonds["radius"], bonds["length"], bonds["volume"], *other.values()])
 
 
 def frames(path):
@@ -192,8 +200,10 @@ def frames(path):
         for row, line in enumerate(stream, start=1):
             if line.startswith("ITEM:"):
                 words = line[5:].split()
-                key = next((" ".join(words[:n]) for n in (3, 2, 1) if " ".join(words[:n]) in (
-                    "TIME", "TIMESTEP", "UNITS", "NUMBER OF ATOMS", "NUMBER OF ENTRIES", "BOX BOUNDS", "ATOMS", "ENTRIES")), words[0])
+                key = next((" ".join(words[:n])
+                            for n in (3, 2, 1) if " ".join(words[:n]) in ("TIME", "TIMESTEP", "UNITS", "NUMBER OF ATOMS",
+                                                                          "NUMBER OF ENTRIES", "BOX BOUNDS", "ATOMS", "ENTRIES")),
+                           words[0])
                 if key in items:
                     yield items, place
                     items = {}
@@ -255,8 +265,13 @@ def read_dump(path, given):
         periodic = [flag.startswith("p") for flag in (flags if len(flags) == 3 else given.boundary or "ppp")]
         ids = columns.pop("id", numpy.arange(1, len(position) + 1)).astype(numpy.int64)
         material = columns.pop("type", numpy.ones(len(position))).astype(numpy.int32) - 1
-        document = state(box_of(low, high, periodic), {"id": ids, "position": position, "radius": radius, "material": material,
-                                                       **joined_columns(columns)}, time_of(items, given, place))
+        document = state(box_of(low, high, periodic), {
+            "id": ids,
+            "position": position,
+            "radius": radius,
+            "material": material,
+            **joined_columns(columns)
+        }, time_of(items, given, place))
         if frame := next(bonded, None):
             add_bonds(document, table_of(frame[0], "ENTRIES", companion, frame[1]), ids, companion)
         yield document
@@ -264,7 +279,8 @@ def read_dump(path, given):
 
 def positions_of(columns, low, high, length, place):
     """Places of the atoms, m, from wrapped, unwrapped or scaled columns."""
-    for names, scaled in (("x", "y", "z"), False), (("xu", "yu", "zu"), False), (("xs", "ys", "zs"), True), (("xsu", "ysu", "zsu"), True):
+    for names, scaled in (("x", "y", "z"), False), (("xu", "yu", "zu"), False), (("xs", "ys", "zs"), True), (("xsu", "ysu", "zsu"),
+                                                                                                             True):
         if all(name in columns for name in names):
             place_ = numpy.column_stack([columns.pop(name) for name in names])
             return low + place_ * (high - low) if scaled else length * place_

@@ -7,9 +7,9 @@ import shlex
 
 import numpy
 
-from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, bounds, box_of, free_box, joined_columns, nearest_image,
-                            neck_length, number, opened, particle_arrays, periodic_axes, rows_of, series, split_columns, state, warn, whole,
-                            written)
+from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, bounds, box_of, free_box, joined_columns,
+                            nearest_image, neck_length, number, opened, particle_arrays, periodic_axes, rows_of, series,
+                            split_columns, state, warn, whole, written)
 
 CSV_LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
@@ -22,9 +22,12 @@ def write_xyz(path, documents, given):
             particles, bonds = particle_arrays(document), bonds or "bonds" in document
             low, high = bounds(document["box"])
             materials = [material.get("name", "X") for material in document.get("materials") or [{"name": "alumina"}]]
-            arrays = {name: numpy.asarray(values).reshape(len(particles["radius"]), -1) for name, values in particles.items()
-                      if name not in ("position", "material")}
-            properties = "".join(f":{name}:{'I' if values.dtype.kind in 'iu' else 'R'}:{values.shape[1]}" for name, values in arrays.items())
+            arrays = {
+                name: numpy.asarray(values).reshape(len(particles["radius"]), -1)
+                for name, values in particles.items() if name not in ("position", "material")
+            }
+            properties = "".join(f":{name}:{'I' if values.dtype.kind in 'iu' else 'R'}:{values.shape[1]}"
+                                 for name, values in arrays.items())
             lattice = " ".join(repr(float(value)) for value in numpy.diag(high - low).ravel())
             stream.write(f"{len(particles['radius'])}\n")
             stream.write(f'Lattice="{lattice}" Origin="{" ".join(map(repr, low.tolist()))}" '
@@ -71,7 +74,10 @@ def read_xyz(path, given):
             radius = arrays.pop("radius", None) if given.radius is None else numpy.full(count, given.radius)
             if radius is None:
                 raise ConvertError(f"{place}: the particles have no radius; give --radius")
-            document = state(xyz_box(keys, position, radius, place), {"position": position, "radius": radius}, float(keys.get("time", 0.0)))
+            document = state(xyz_box(keys, position, radius, place), {
+                "position": position,
+                "radius": radius
+            }, float(keys.get("time", 0.0)))
             names = list(dict.fromkeys(species.tolist()))
             document["particles"]["material"] = numpy.array([names.index(each) for each in species.tolist()], numpy.int32)
             if species.dtype.kind == "U" and not given.like:
@@ -106,8 +112,16 @@ def write_csv(path, documents, given):
         x, y, z = particles["position"].T
         with written(name) as stream:
             stream.write(f"# time {document.get('time', 0.0)!r} s\n# box {json.dumps(document['box'])}\n")
-            write_table(stream, {"id": particles["id"], "x (m)": x, "y (m)": y, "z (m)": z, "radius (m)": particles["radius"],
-                                 "material": particles["material"], **split_columns(particles, SMALL)})
+            write_table(
+                stream, {
+                    "id": particles["id"],
+                    "x (m)": x,
+                    "y (m)": y,
+                    "z (m)": z,
+                    "radius (m)": particles["radius"],
+                    "material": particles["material"],
+                    **split_columns(particles, SMALL)
+                })
         if bonds is None:
             continue
         if name == "-":
@@ -115,9 +129,18 @@ def write_csv(path, documents, given):
             continue
         with written(beside(name, ".bonds")) as stream:
             ends, image = particles["id"][bonds["pair"]].T, bonds["image"].T
-            write_table(stream, {"id1": ends[0], "id2": ends[1], "image_x": image[0], "image_y": image[1], "image_z": image[2],
-                                 "radius (m)": bonds["radius"], "length (m)": bonds["length"], "volume (m3)": bonds["volume"],
-                                 **split_columns(bonds, LARGE)})
+            write_table(
+                stream, {
+                    "id1": ends[0],
+                    "id2": ends[1],
+                    "image_x": image[0],
+                    "image_y": image[1],
+                    "image_z": image[2],
+                    "radius (m)": bonds["radius"],
+                    "length (m)": bonds["length"],
+                    "volume (m3)": bonds["volume"],
+                    **split_columns(bonds, LARGE)
+                })
 
 
 def read_table(path):
@@ -145,7 +168,8 @@ def read_table(path):
         name, unit = re.fullmatch(r"(.*?)\s*(?:[(\[](.*?)[)\]])?", heading).groups() if "(" in heading else (heading, None)
         table[name] = numpy.array(values) * (CSV_LENGTHS.get(unit, 1.0) if unit else 1.0)
         if name in ("x", "y", "z", "radius", "diameter", "length") and unit not in CSV_LENGTHS:
-            raise ConvertError(f"{path}: column '{heading}' has no unit of length; known here: {', '.join(CSV_LENGTHS)}, as in 'x (mm)'")
+            raise ConvertError(
+                f"{path}: column '{heading}' has no unit of length; known here: {', '.join(CSV_LENGTHS)}, as in 'x (mm)'")
     return table, remarks
 
 

@@ -1,4 +1,4 @@
-"""convert_vtu.py: states as VTK unstructured grids (VTU): spheres are vertices with a radius, bonds are lines; a series has a PVD file."""
+"""convert_vtu.py: states as VTK unstructured grids (VTU): spheres are vertices with a radius, bonds are lines; PVD for a series."""
 import os
 from xml.sax.saxutils import quoteattr
 
@@ -46,7 +46,8 @@ def mesh_of(document, mode):
             if name in ("pair", "image"):
                 continue
             values = plain(values)[shown]
-            blank = numpy.full((len(particles["radius"]), *values.shape[1:]), numpy.nan if values.dtype.kind == "f" else 0, values.dtype)
+            blank = numpy.full((len(particles["radius"]), *values.shape[1:]), numpy.nan if values.dtype.kind == "f" else 0,
+                               values.dtype)
             cell_data[f"bond_{name}" if name in SMALL else name] = [blank, values]
     point_data = {name: plain(values)[source] for name, values in particles.items() if name != "position"}
     point_data["ghost"] = (numpy.arange(len(source)) >= len(particles["radius"])).astype(numpy.int32)
@@ -68,7 +69,8 @@ def write(path, documents, given):
     documents = list(documents)
     if path.endswith(".vtu"):
         if len(documents) != 1:
-            raise ConvertError(f"{path}: there are {len(documents)} states, a VTU holds one; write a .pvd, or choose with analyze select")
+            raise ConvertError(
+                f"{path}: there are {len(documents)} states, a VTU holds one; write a .pvd, or choose with analyze select")
         write_grid(path, documents[0], given.bonds)
         return
     stem = os.path.splitext(path)[0]

@@ -31,6 +31,7 @@ examples:
 
 
 def quantity(units):
+
     def parse(text):
         found = re.fullmatch(r"([-+0-9.eE]+)([a-z]+)", text)
         if not found or found[2] not in units:
@@ -42,6 +43,7 @@ def quantity(units):
         if not value > 0:
             raise argparse.ArgumentTypeError(f"'{text}' is not greater than zero")
         return value
+
     return parse
 
 
@@ -64,12 +66,38 @@ def write_vtu(path, documents, given):
     convert_vtu.write(path, documents, given)
 
 
-READERS = {"dem": read_dem, "data": convert_lammps.read_data, "dump": convert_lammps.read_dump, "xyz": convert_text.read_xyz,
-           "csv": convert_text.read_csv, "musen": convert_musen.read_musen}
-WRITERS = {"dem": write_dem, "vtu": write_vtu, "data": convert_lammps.write_data, "dump": convert_lammps.write_dump, "xyz": convert_text.write_xyz,
-           "csv": convert_text.write_csv}
-ENDINGS = {".kiln": "dem", ".dem": "dem", ".jsonl": "dem", ".json": "dem", ".vtu": "vtu", ".pvd": "vtu", ".data": "data", ".lmp": "data",
-           ".dump": "dump", ".lammpstrj": "dump", ".xyz": "xyz", ".extxyz": "xyz", ".csv": "csv", ".txt": "musen"}
+READERS = {
+    "dem": read_dem,
+    "data": convert_lammps.read_data,
+    "dump": convert_lammps.read_dump,
+    "xyz": convert_text.read_xyz,
+    "csv": convert_text.read_csv,
+    "musen": convert_musen.read_musen
+}
+WRITERS = {
+    "dem": write_dem,
+    "vtu": write_vtu,
+    "data": convert_lammps.write_data,
+    "dump": convert_lammps.write_dump,
+    "xyz": convert_text.write_xyz,
+    "csv": convert_text.write_csv
+}
+ENDINGS = {
+    ".kiln": "dem",
+    ".dem": "dem",
+    ".jsonl": "dem",
+    ".json": "dem",
+    ".vtu": "vtu",
+    ".pvd": "vtu",
+    ".data": "data",
+    ".lmp": "data",
+    ".dump": "dump",
+    ".lammpstrj": "dump",
+    ".xyz": "xyz",
+    ".extxyz": "xyz",
+    ".csv": "csv",
+    ".txt": "musen"
+}
 
 
 def format_of(path, told, known, option):
@@ -94,22 +122,33 @@ def with_the_rest(documents, given):
 
 
 def parser():
-    parse = argparse.ArgumentParser(prog="dem-convert", description="Converts states into the formats of neighbouring programs and back.",
-                                    epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parse = argparse.ArgumentParser(prog="dem-convert",
+                                    description="Converts states into the formats of neighbouring programs and back.",
+                                    epilog=EXAMPLES,
+                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parse.add_argument("source", metavar="FROM", help="file to read; - is standard input")
     parse.add_argument("target", metavar="TO", help="file to write, whole or not at all; - is standard output")
     parse.add_argument("--from", dest="reads", choices=READERS, help="format of FROM")
     parse.add_argument("--to", dest="writes", choices=WRITERS, help="format of TO")
     parse.add_argument("--text", action="store_true", help="write text documents (JSON lines) instead of binary ones")
-    parse.add_argument("--bonds", choices=("cut", "ghosts"), default="ghosts",
+    parse.add_argument("--bonds",
+                       choices=("cut", "ghosts"),
+                       default="ghosts",
                        help="VTU: leave bonds through periodic faces out, or draw them to ghosts of their particles (default)")
-    parse.add_argument("--units", choices=convert_lammps.LENGTHS, help="LAMMPS style of units (default: what the file says, else si)")
-    parse.add_argument("--atom-style", choices=convert_lammps.ATOM_COLUMNS, default="sphere", help="of a data file that does not say it")
+    parse.add_argument("--units",
+                       choices=convert_lammps.LENGTHS,
+                       help="LAMMPS style of units (default: what the file says, else si)")
+    parse.add_argument("--atom-style",
+                       choices=convert_lammps.ATOM_COLUMNS,
+                       default="sphere",
+                       help="of a data file that does not say it")
     parse.add_argument("--boundary", metavar="ppp", type=boundary, help="p or f for each axis, where the file does not say it")
     parse.add_argument("--radius", type=quantity(LENGTH), help="of all particles, where the file has none, such as 50nm")
     parse.add_argument("--bond-radius", type=quantity(LENGTH), help="of all bonds, where the file has none")
     parse.add_argument("--time-step", type=quantity(TIME), help="of a dump without ITEM: TIME, such as 10ns")
-    parse.add_argument("--like", metavar="STATE", help="a dem-state file whose materials, contacts and history hold for what is read")
+    parse.add_argument("--like",
+                       metavar="STATE",
+                       help="a dem-state file whose materials, contacts and history hold for what is read")
     parse.add_argument("--version", action="version", version="dem-convert (Kiln) 0.1.0")
     return parse
 
@@ -132,8 +171,9 @@ def main():
     except BrokenPipeError:
         sys.stderr.close()  # the reader of the pipe has gone
         return 141
-    except (ConvertError, ValueError, KeyError) as error:
-        print(f"dem-convert: {error if isinstance(error, ConvertError) else f'{given.source}: cannot be read, {error!r}'}", file=sys.stderr)
+    except (ConvertError, ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+        print(f"dem-convert: {error if isinstance(error, ConvertError) else f'{given.source}: cannot be read, {error!r}'}",
+              file=sys.stderr)
         return 1
     except OSError as error:
         print(f"dem-convert: {error.filename}: {error.strerror}", file=sys.stderr)

@@ -1,6 +1,7 @@
 """ensemble.py: means of every number over the packings of an ensemble, with 95 % confidence intervals, as text, CSV and JSON.
 
-The interval is mean +- t s/sqrt(n), s the standard deviation of the n packings and t of Student's distribution with n - 1 degrees of freedom."""
+The interval is mean +- t s/sqrt(n), s the standard deviation of the n packings and t of Student's distribution with n - 1 degrees
+of freedom."""
 import argparse
 import csv
 import json
@@ -27,7 +28,7 @@ NUMBERS = (  # heading, unit, factor, file, and how the number is read from it
 def student_factor(freedom):
     """t with P(|x| < t) = CONFIDENCE. With x = sqrt(n) tan(angle) the density becomes cos(angle)^(n - 1), which is summed."""
     angle = numpy.linspace(0.0, math.pi / 2, 200_001)
-    density = numpy.cos(angle) ** (freedom - 1)
+    density = numpy.cos(angle)**(freedom - 1)
     share = numpy.concatenate([[0.0], numpy.cumsum((density[1:] + density[:-1]) / 2)])
     return math.sqrt(freedom) * math.tan(numpy.interp(CONFIDENCE, share / share[-1], angle))
 
@@ -37,8 +38,16 @@ def entry(case, name, unit, values):
     mean, several = float(numpy.mean(values)), len(values) > 1
     deviation = float(numpy.std(values, ddof=1)) if several else None
     reach = student_factor(len(values) - 1) * deviation / math.sqrt(len(values)) if several else None
-    return {"case": case, "quantity": name, "unit": unit, "packings": len(values), "mean": mean, "standard_deviation": deviation,
-            "lower": mean - reach if several else None, "upper": mean + reach if several else None}
+    return {
+        "case": case,
+        "quantity": name,
+        "unit": unit,
+        "packings": len(values),
+        "mean": mean,
+        "standard_deviation": deviation,
+        "lower": mean - reach if several else None,
+        "upper": mean + reach if several else None
+    }
 
 
 def entries(run, packings, temperatures):
@@ -70,7 +79,9 @@ def as_text(table, packings):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", type=pathlib.Path, help="folder with PACKING/TEMPERATURE/{density,bonds,modulus}.json and PACKING/fit.json")
+    parser.add_argument("run",
+                        type=pathlib.Path,
+                        help="folder with PACKING/TEMPERATURE/{density,bonds,modulus}.json and PACKING/fit.json")
     parser.add_argument("--packings", nargs="+", required=True)
     parser.add_argument("--temperatures", nargs="+", required=True)
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="table to write; also as .csv and .json")

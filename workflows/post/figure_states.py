@@ -22,12 +22,12 @@ def inside_box(state):
     box = state["box"]
     size, low = numpy.diag(box["vectors"]), numpy.array(box.get("origin", (0, 0, 0)))
     cell = (state["particles"]["position"] - low) / size
-    cell = numpy.where(box.get("periodic", (True,) * 3), cell % 1.0, cell)
+    cell = numpy.where(box.get("periodic", (True, ) * 3), cell % 1.0, cell)
     return ((cell - 0.5) * size) @ camera().T
 
 
 def render(state, pixel):
-    """Brightness of each pixel, from spheres in the order of their distance; transparent (nan) where there is none. pixel: its size, m."""
+    """Brightness of each pixel, nan where there is no sphere, and the corners of the picture, m. pixel: its size, m."""
     place, radius = inside_box(state), state["particles"]["radius"]
     reach = radius.max() + pixel
     low, high = place.min(axis=0) - reach, place.max(axis=0) + reach
@@ -66,15 +66,19 @@ def draw(states):
     pixel = numpy.ptp(inside_box(first)[:, 0]) / PIXELS + first["particles"]["radius"].max() / PIXELS
     pictures = [picture(state, pixel) for state in (first, last)]
     ratio = sum(shade.shape[0] for shade, _, _ in pictures) / PIXELS
-    figure, axes = pyplot.subplots(2, 1, figsize=(6.0, 6.0 * ratio + 0.7), height_ratios=[shade.shape[0] for shade, _, _ in pictures])
+    figure, axes = pyplot.subplots(2,
+                                   1,
+                                   figsize=(6.0, 6.0 * ratio + 0.7),
+                                   height_ratios=[shade.shape[0] for shade, _, _ in pictures])
     widest = max(numpy.abs([low[0], high[0]]).max() for _, low, high in pictures) / NM
     for axis, state, (shade, low, high), word in zip(axes, (first, last), pictures, ("before", "after")):
         limits = numpy.array([low[0], low[0] + pixel * shade.shape[1], low[1], low[1] + pixel * shade.shape[0]]) / NM
         axis.imshow(shade, origin="lower", extent=limits, interpolation="antialiased")
         axis.set_xlim(-widest, widest)
         axis.set_axis_off()
-        axis.set_title(f"{word}: relative density {relative_density(state):.2f}, {len(state['particles']['radius']):,} particles", loc="left")
-    bar = 10 ** numpy.floor(numpy.log10(widest))
+        axis.set_title(f"{word}: relative density {relative_density(state):.2f}, {len(state['particles']['radius']):,} particles",
+                       loc="left")
+    bar = 10**numpy.floor(numpy.log10(widest))
     axes[1].plot([-widest, bar - widest], [limits[2]] * 2, color="black", linewidth=2.0, clip_on=False)
     axes[1].annotate(f"{bar:,.0f} nm", (bar / 2 - widest, limits[2]), (0, 3), textcoords="offset points", ha="center")
     return figure

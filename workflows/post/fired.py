@@ -1,8 +1,9 @@
 """fired.py: densities after firings beside measured ones, and how far the kinetics of the model are from those of the furnace.
 
-Only the integral of the diffusion parameter over time, theta, enters the densification of a given packing (master sintering curve: H. Su &
-D. L. Johnson, J. Am. Ceram. Soc. 79 (1996) 3211). The history of the hottest firing gives the density as a function of theta; with it follow
-the density after any other firing, the firing that gives a wanted density, and the factor by which diffusion would have to be slower."""
+Only the integral of the diffusion parameter over time, theta, enters the densification of a given packing (master sintering curve:
+H. Su & D. L. Johnson, J. Am. Ceram. Soc. 79 (1996) 3211). The history of the hottest firing gives the density against theta;
+with it follow the density after any other firing, the firing that gives a wanted density, and the factor by which diffusion would
+have to be slower."""
 import argparse
 import csv
 import json
@@ -26,7 +27,7 @@ def temperature_of(word):
 
 
 def programme(schedule, hottest=None):
-    """Times (s) and temperatures (K) along a schedule such as "25C 10K/min 1200C 1h 10K/min 25C"; hottest replaces its highest temperature."""
+    """Times (s) and temperatures (K) along a schedule such as "25C 10K/min 1200C 1h 10K/min 25C"; hottest replaces the peak."""
     peak = max(value for value in map(temperature_of, schedule.split()) if value is not None)
     time, kelvin, rate = [0.0], [], None
     for word in schedule.split():
@@ -84,8 +85,14 @@ def compare(run, schedules, measured):
     firings = []
     for case, schedule in sorted(schedules.items(), key=lambda item: peak[item[0]]):
         state = read_file(run / case / "density.json")[0]
-        entry = {"firing": case, "temperature": peak[case], "relative_density": state["relative_density"], "measured": measured.get(case),
-                 "equivalent_temperature": None, "slower_by": None}
+        entry = {
+            "firing": case,
+            "temperature": peak[case],
+            "relative_density": state["relative_density"],
+            "measured": measured.get(case),
+            "equivalent_temperature": None,
+            "slower_by": None
+        }
         if entry["measured"] is not None:
             needed = float(numpy.exp(numpy.interp(entry["measured"], density, numpy.log(theta))))
             entry["equivalent_temperature"] = temperature_for(schedule, needed, energy)
@@ -94,29 +101,46 @@ def compare(run, schedules, measured):
     grid = numpy.linspace(min(peak.values()) - 100.0, max(peak.values()) + 25.0, 100)
     reached = [theta_along(*programme(schedules[hottest], kelvin), energy)[1][-1] for kelvin in grid]
     curve = numpy.interp(numpy.log(reached), numpy.log(theta), density)
-    return {"firings": firings, "activation_energy": energy, "curve": {"temperature": grid.tolist(), "relative_density": curve.tolist()}}
+    return {
+        "firings": firings,
+        "activation_energy": energy,
+        "curve": {
+            "temperature": grid.tolist(),
+            "relative_density": curve.tolist()
+        }
+    }
 
 
 def as_text(result):
-    lines = ["Relative densities after the firings of the paper", "",
-             f"{'firing':>8}{'model':>9}{'measured':>10}   {'model reaches the measured one at':>34}   {'diffusion should be slower by':>30}"]
+    lines = [
+        "Relative densities after the firings of the paper", "",
+        f"{'firing':>8}{'model':>9}{'measured':>10}   {'model reaches the measured one at':>34}   "
+        f"{'diffusion should be slower by':>30}"
+    ]
     for entry in result["firings"]:
-        words = "" if entry["measured"] is None else (f"{entry['measured']:10.2f}   {entry['equivalent_temperature'] - ZERO_CELSIUS:32.0f} C"
-                                                      f"   {entry['slower_by']:30.1f}")
-        lines.append(f"{entry['firing']:>8}{entry['relative_density']:9.3f}{words}" + ("   *" if entry["relative_density"] > VALID else ""))
+        words = "" if entry["measured"] is None else (
+            f"{entry['measured']:10.2f}   {entry['equivalent_temperature'] - ZERO_CELSIUS:32.0f} C"
+            f"   {entry['slower_by']:30.1f}")
+        lines.append(f"{entry['firing']:>8}{entry['relative_density']:9.3f}{words}" +
+                     ("   *" if entry["relative_density"] > VALID else ""))
     known = [entry for entry in result["firings"] if entry["slower_by"]]
     lines += ["", f"* above {VALID}: outside of what the model can say, for it has no grain growth."]
     if len(known) > 1:
         first, last = known[0], known[-1]
-        slope = numpy.polyfit([1 / entry["temperature"] for entry in known], [numpy.log(entry["slower_by"]) for entry in known], 1)[0]
+        slope = numpy.polyfit([1 / entry["temperature"] for entry in known], [numpy.log(entry["slower_by"]) for entry in known],
+                              1)[0]
         apparent = result["activation_energy"] + slope * GAS_CONSTANT
-        lines += ["", f"With the published diffusion data the model sinters too fast: {first['slower_by']:.1f} times at {first['firing']}, "
-                  f"{last['slower_by']:.0f} times at {last['firing']}.",
-                  f"The measured densities rise more slowly with temperature than one activated process of {result['activation_energy'] / 1e3:.0f} "
-                  f"kJ/mol allows; read as a",
-                  f"master sintering curve of this packing they have an apparent activation energy of {apparent / 1e3:.0f} kJ/mol.",
-                  "Densities may be compared with experiments, times and temperatures may not. What the model leaves out acts in this direction:",
-                  "grains grow in the last stage, the powder has agglomerates and a spread of sizes, and surface diffusion coarsens it while heating."]
+        lines += [
+            "",
+            f"With the published diffusion data the model sinters too fast: {first['slower_by']:.1f} times at {first['firing']}, "
+            f"{last['slower_by']:.0f} times at {last['firing']}.",
+            f"The measured densities rise more slowly with temperature than one activated process of "
+            f"{result['activation_energy'] / 1e3:.0f} "
+            f"kJ/mol allows; read as a",
+            f"master sintering curve of this packing they have an apparent activation energy of {apparent / 1e3:.0f} kJ/mol.",
+            "Densities may be compared with experiments, times and temperatures may not. What the model leaves out acts in this way:",
+            "grains grow in the last stage, the powder has agglomerates and a spread of sizes, and surface diffusion coarsens it on heating."
+        ]
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""report.py: one page of HTML that shows a run: figures, tables beside the paper's, every command with version and seed, links to the files."""
+"""report.py: one page of HTML that shows a run: figures, tables beside the paper's, every command, links to the files."""
 import argparse
 import base64
 import html
@@ -10,18 +10,22 @@ from dem_state import read_file
 from style import GPA
 
 FIGURES = (
-    ("states", "The packing before and after", "Shaded spheres, at one scale; what sticks out of one face of the periodic box is missing at the other."),
-    ("density", "Densification", "Relative density against time at the temperature of sintering, with the picked states (Fig. 2 of the paper)."),
+    ("states", "The packing before and after",
+     "Shaded spheres, at one scale; what sticks out of one face of the periodic box is missing at the other."),
+    ("density", "Densification",
+     "Relative density against time at the temperature of sintering, with the picked states (Fig. 2 of the paper)."),
     ("bonds", "Bonds", "Distribution of the bond radii at each density (Fig. 4)."),
     ("bend", "Bending", "A slice of the bent bar: every line is a bond, coloured by the force along it (Fig. 5)."),
-    ("modulus", "Young's modulus", "Moduli of the bending tests with the fitted law, its 95 % band, and curves of the literature (Fig. 6)."),
+    ("modulus", "Young's modulus",
+     "Moduli of the bending tests with the fitted law, its 95 % band, and curves of the literature (Fig. 6)."),
 )
 KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
 
 STYLE = """
 :root { --ink: #1c2733; --soft: #5b6b7a; --line: #d5dde4; --accent: #0072b2; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 4rem; color: var(--ink); font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; }
+body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 4rem; color: var(--ink); 
+       font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; }
 h1 { margin: 0 0 .3rem; font-size: 1.9rem; line-height: 1.2; }
 h2 { margin: 2.6rem 0 .8rem; padding-bottom: .3rem; border-bottom: 2px solid var(--line); font-size: 1.25rem; }
 p.lead, figcaption, td.soft, p.note { color: var(--soft); }
@@ -45,7 +49,8 @@ a { color: var(--accent); }
   h1 { font-size: 16pt; } h2 { margin-top: 1.2rem; break-after: avoid; }
   dl.facts { grid-template-columns: repeat(5, 1fr); }
   .figures { display: block; } figure, figure.wide { display: inline-block; width: 48%; margin: 0 1% 1rem 0; vertical-align: top; }
-  figure.wide { display: block; width: 100%; max-width: none; } figure.wide img { width: auto; max-width: 100%; max-height: 12.5cm; }
+  figure.wide { display: block; width: 100%; max-width: none; }
+  figure.wide img { width: auto; max-width: 100%; max-height: 12.5cm; }
   section.files { display: none; }
 }
 """
@@ -83,22 +88,29 @@ def table2(entries):
         row = [entry for entry in entries if entry["quantity"] == name]
         title = name if row[0]["unit"] == "-" else f"{name}, {row[0]['unit']}"
         for key in ("run", "paper"):
-            rows.append(("first" if key == "run" else "", [title if key == "run" else "", "this run" if key == "run" else "paper",
-                                                          *(f"{entry[key]:,.{entry['decimals']}f}" for entry in row)]))
+            rows.append(("first" if key == "run" else "", [
+                title if key == "run" else "", "this run" if key == "run" else "paper",
+                *(f"{entry[key]:,.{entry['decimals']}f}" for entry in row)
+            ]))
         rows.append(("", ["", "deviation", *(f"{100 * entry['deviation']:+.2f} %" for entry in row)]))
     return table(["relative density", "", *(f"{density:.2f}" for density in densities)], rows)
 
 
 def moduli(tests, fit):
-    rows = [("", [f"{test['relative_density']:.3f}", f"{test['young_modulus'] / GPA:.1f}",
-                  "–" if test["standard_error"] is None else "&lt; 0.001" if test["standard_error"] < 1e-3 * GPA else f"{test['standard_error'] / GPA:.2g}",
-                  test["points"],
-                  html.escape(test.get("bond_law", "–")), html.escape(test.get("method", "–"))]) for test in tests]
+    rows = [("", [
+        f"{test['relative_density']:.3f}", f"{test['young_modulus'] / GPA:.1f}", "–" if test["standard_error"] is None else
+        "&lt; 0.001" if test["standard_error"] < 1e-3 * GPA else f"{test['standard_error'] / GPA:.2g}", test["points"],
+        html.escape(test.get("bond_law", "–")),
+        html.escape(test.get("method", "–"))
+    ]) for test in tests]
     errors = fit["standard_errors"]
-    numbers = "; ".join(f"{name} = {fit[name] / (GPA if name == 'E0' else 1):.4g}" + (" GPa" if name == "E0" else "")
-                        + ("" if error is None else f" ± {error / (GPA if name == 'E0' else 1):.2g}") for name, error in errors.items())
-    text = (f"<p>Law <b>{html.escape(fit['law'])}</b>, E = {html.escape(fit['formula'])} ({html.escape(fit['source'])}): {html.escape(numbers)} "
-            f"(standard errors), R² = {fit['r_squared']:.4f}, {len(fit['points'])} points.</p>")
+    numbers = "; ".join(f"{name} = {fit[name] / (GPA if name == 'E0' else 1):.4g}" + (" GPa" if name == "E0" else "") +
+                        ("" if error is None else f" ± {error / (GPA if name == 'E0' else 1):.2g}")
+                        for name, error in errors.items())
+    text = (
+        f"<p>Law <b>{html.escape(fit['law'])}</b>, E = {html.escape(fit['formula'])} ({html.escape(fit['source'])}): "
+        f"{html.escape(numbers)} "
+        f"(standard errors), R² = {fit['r_squared']:.4f}, {len(fit['points'])} points.</p>")
     head = ["relative density", "Young's modulus, GPa", "standard error, GPa", "points", "bond law", "method"]
     return table(head, rows) + text
 
@@ -126,7 +138,8 @@ def files(run):
     rows = []
     for path in sorted(run.rglob("*")):
         name = path.relative_to(run).as_posix()
-        if path.is_file() and path.suffix in (".kiln", ".json", ".jsonl", ".csv", ".txt", ".png", ".svg", ".pdf") and name != "report.html":
+        if path.is_file() and path.suffix in (".kiln", ".json", ".jsonl", ".csv", ".txt", ".png", ".svg",
+                                              ".pdf") and name != "report.html":
             size = path.stat().st_size
             shown = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{size / 1e3:.1f} kB"
             rows.append(("", [f'<a href="{html.escape(name)}" download>{html.escape(name)}</a>', shown]))
@@ -142,14 +155,16 @@ def page(run, kind):
     commands, steps = provenance([test.get("history", []) for test in tests])
     seed = next((step["seed"] for step in steps if "seed" in step), "–")
     worst = max(abs(entry["deviation"]) for entry in entries)
-    facts = (("particles", f"{bonds[0]['particles']:,}"), ("seed", seed), ("densities", f"{len(cases)}"), ("Table 2, worst deviation", f"{100 * worst:.1f} %"),
+    facts = (("particles", f"{bonds[0]['particles']:,}"), ("seed", seed), ("densities", f"{len(cases)}"),
+             ("Table 2, worst deviation", f"{100 * worst:.1f} %"),
              ("Young's modulus", f"{tests[0]['young_modulus'] / GPA:.0f} – {tests[-1]['young_modulus'] / GPA:.0f} GPa"))
     boxes = "".join(f"<div><dt>{html.escape(name)}</dt><dd>{value}</dd></div>" for name, value in facts)
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Stiffness of a sintered ceramic</title><style>{STYLE}</style></head><body>
 <h1>Stiffness of a sintered ceramic, from particles</h1>
-<p class="lead">A run of Kiln after M. Dosta et al., <i>Approximation of mechanical properties of sintered materials with discrete element method</i>, 2017.</p>
+<p class="lead">A run of Kiln after M. Dosta et al.,
+<i>Approximation of mechanical properties of sintered materials with discrete element method</i>, 2017.</p>
 <dl class="facts">{boxes}</dl>
 <h2>Figures</h2>{figures(run, kind)}
 <h2>Table 2 of the paper beside this run</h2>{table2(entries)}
