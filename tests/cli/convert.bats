@@ -233,3 +233,11 @@ END
     run -0 ls
     refute_line --regexp "^out|partial"
 }
+
+@test "the command works through a link, as installed, and has the version of the programs" {
+    ln -s "$CONVERT" linked
+    run -0 env -u PYTHONPATH ./linked --version
+    assert_output "$("$ANALYZE" info --version | sed 's/^analyze info/dem-convert/')"
+    run -0 env -u PYTHONPATH ./linked --help
+    assert_output --partial "--bonds {cut,ghosts}"
+}
