@@ -18,12 +18,12 @@ struct Subcommand {
 
 constexpr std::array subcommands{
     Subcommand{"info", "what each document of a stream holds", analyze::info},
-    Subcommand{"density", "density, coordination number, overlaps and clusters of states", analyze::density},
-    Subcommand{"bonds", "number, mean diameter and length of bonds, and the distribution of their radii", analyze::bonds},
-    Subcommand{"select", "the states of a stream nearest to given densities, times or places", analyze::select},
-    Subcommand{"modulus", "Young's modulus from the last unloading of a bending test", analyze::modulus},
+    Subcommand{"density", "density, coordination number, overlaps, clusters, texture and g(r) of states", analyze::density},
+    Subcommand{"bonds", "number and sizes of bonds, the distribution of their radii, and the loads they carry", analyze::bonds},
+    Subcommand{"select", "the states of a stream nearest to given densities, times or places, or in between", analyze::select},
+    Subcommand{"modulus", "Young's modulus from the last unloading of a bending test, simulated or measured", analyze::modulus},
     Subcommand{"elastic", "elastic tensor of a periodic cell of bonded particles", analyze::elastic},
-    Subcommand{"fit", "a law of Young's modulus against porosity through several tests", analyze::fit},
+    Subcommand{"fit", "laws of Young's modulus against porosity through several tests or measurements", analyze::fit},
 };
 
 /// `analyze`, `analyze --help`, or a subcommand that does not exist.
