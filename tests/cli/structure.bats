@@ -34,7 +34,7 @@ value() { jq -r "$1" <<<"$output"; }
     near "$(jq .relative_density <<<"${lines[0]}")" 1 0.01
     near "$(jq .relative_density <<<"${lines[1]}")" 0.895746 0.01  # (pi/3)/1.16908
     near "$(jq .relative_density <<<"${lines[2]}")" 0.811177 0.03  # the same torus, and the sphere between -1/6 and 1/6; a groove is felt to a sixth of the grid
-    assert_equal "$(jq -r .measure <<<"${lines[2]}")" envelope
+    assert_equal "$(jq -r '[.measure, .probe_radius] | tostring' <<<"${lines[2]}")" '["envelope",1]'
     run -1 "$ANALYZE" density --measure envelope "$DATA/cubic_series.jsonl"
     assert_output --partial "cubic_series.jsonl, document 1: the state is periodic along all axes"
     run -2 "$ANALYZE" density --measure envelope --probe-radius 0nm "$DATA/two_spheres.jsonl"
