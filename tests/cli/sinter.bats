@@ -87,8 +87,9 @@ END
         wait "$pid" 2>/dev/null || true
         [ ! -e broken.kiln ] || break
     done
+    echo "$kills kills"
     [ "$kills" -ge 3 ]
-    [ -e broken.kiln ] || (resumable)
+    if [ -e run.kiln ] || [ ! -e broken.kiln ]; then (resumable); fi
     cmp broken.kiln whole.kiln
     cmp broken.jsonl whole.jsonl
     run -0 bash -c 'ls run.kiln* broken*partial* 2>/dev/null | wc -l'

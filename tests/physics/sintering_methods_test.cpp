@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <random>
 
 #include "numerics/explicit_sintering.h"
 #include "tests/physics/sintering_cases.h"
@@ -35,25 +36,54 @@ State free_cluster() {
     return state;
 }
 
+/// Face-centred cubic packing with vacancies, every particle shaken by less than the overlap: all contacts last.
+State shaken_crystal() {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> shake(-1.0, 1.0);
+    const double cell = 2.0 * radius * 0.96 / std::sqrt(0.5);
+    constexpr int cells = 3;
+    std::vector<Vec3> positions;
+    for (int x = 0; x < cells; ++x)
+        for (int y = 0; y < cells; ++y)
+            for (int z = 0; z < cells; ++z)
+                for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)}) {
+                    const Vec3 shaken = cell * (site + Vec3(x, y, z)) + 0.01 * radius * Vec3(shake(random), shake(random), shake(random));
+                    if (shake(random) > -0.7) positions.push_back(shaken);
+                }
+    return state_of(positions, std::vector<double>(positions.size(), radius), Vec3::Constant(cells * cell), true);
+}
+
 }  // namespace
 
-TEST_CASE("the implicit step is of second order in time") {
-    const State start = sintered(random_packing(120, 0.55, 1.0), 20.0);
-    const double time = start.time + 60.0;
-    const auto density_in = [&](int steps) {
+TEST_CASE("the implicit step is of second order in time where contacts last") {
+    const State start = shaken_crystal();
+    const auto positions_after = [&](int steps) {
         numerics::SinteringSettings wanted = settings(0.9);  // the length of the steps is given here, not controlled
         wanted.solver_tolerance = 1e-8;
         numerics::ImplicitSintering sintering(start, wanted);
+        constexpr double time = 20.0;  // s, in which the density grows by a fifth
         for (int step = 1; step <= steps; ++step) {
-            const double until = start.time + (time - start.time) * step / steps;
+            const double until = time * step / steps;
             while (sintering.time() < until) REQUIRE(sintering.advance(until, endless).converged);
         }
-        return sintering.relative_density();
+        State end = sintering.state();
+        for (Vec3& position : end.particles.position) position = position.cwiseQuotient(end.box.lengths);
+        return end.particles.position;
     };
-    const double exact = density_in(256);
-    const double coarse = std::abs(density_in(8) - exact), fine = std::abs(density_in(64) - exact);
-    CHECK(std::log(coarse / fine) / std::log(8.0) > 1.8);
-    CHECK(fine < 1e-4);
+    const std::vector<Vec3> exact = positions_after(512);
+    const auto error_of = [&](int steps) {
+        double sum = 0.0;
+        const std::vector<Vec3> found = positions_after(steps);
+        for (std::size_t row = 0; row < exact.size(); ++row) {
+            Vec3 apart = found[row] - exact[row];
+            for (double& component : apart) component -= std::round(component);
+            sum += apart.squaredNorm();
+        }
+        return std::sqrt(sum);
+    };
+    const double coarse = error_of(32), fine = error_of(128);
+    CHECK(fine > 0.0);
+    CHECK(std::log(coarse / fine) / std::log(4.0) > 1.8);
 }
 
 TEST_CASE("explicit: a pair with little inertia closes by the pair law") {
