@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace kiln::numerics {
@@ -13,9 +12,6 @@ namespace kiln::numerics {
 namespace {
 
 constexpr double largest_closing = 1.0;     // of the mean radius, of any gap in a step
-constexpr double least_reach = 0.01;        // of the mean radius, that candidates for touch may be apart
-constexpr double guess_margin = 1.3;        // of the closing that is guessed, that makes a candidate
-constexpr double sticking_gap = 1e-6;       // of the reduced radius, between rigid particles that touch
 constexpr double largest_log_step = 0.05;   // of the density
 constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
@@ -29,129 +25,21 @@ constexpr int most_rejections = 20;         // of one step
 
 }  // namespace
 
-ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& settings) : SinteringMethod(std::move(state), settings) {
+ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& settings)
+    : SinteringMethod(std::move(state), settings), candidates_(packing_, kinetics_, settings_.constants) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !packing_.box().periodic[axis]))
             throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
     next_duration_ = first_duration();
 }
 
-PairStep ImplicitSintering::pair_step(const Pair& pair, const std::vector<double>& diffusion) const {
-    const Particles& particles = packing_.particles();
-    const auto [first, second] = packing_.radii(pair);
-    const std::size_t kind = kinetics_.row(particles.material[static_cast<std::size_t>(pair.i)],
-                                           particles.material[static_cast<std::size_t>(pair.j)]);
-    PairStep step{};
-    step.vector = step.lever = packing_.vector(pair);
-    step.distance = step.vector.norm();
-    step.overlap = first + second - step.distance;
-    step.reduced_radius = physics::reduced_radius(first, second);
-    if (kinetics_.rigid(kind)) {
-        step.limit = std::max(0.0, -step.overlap);
-        return step;
-    }
-    const double most = physics::overlap_of_neck(kinetics_.neck_limit(kind) * std::min(first, second), step.reduced_radius);
-    step.limit = std::max(0.0, most - step.overlap);
-    step.force = unit_ * physics::sintering_force(settings_.constants, step.reduced_radius, kinetics_.surface_energy(kind));
-    step.cubic = unit_ * physics::normal_viscosity_factor(settings_.constants, step.reduced_radius) / diffusion[kind];
-    step.shear = unit_ * physics::tangential_viscosity(settings_.constants, 1.0, step.reduced_radius) / diffusion[kind];
-    return step;
-}
-
-double ImplicitSintering::end_overlap(const Pair& pair, const Motion& motion) const {
-    const auto [first, second] = packing_.radii(pair);
-    const Vec3 vector = packing_.vector(pair);
-    const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pair.i)]);
-    const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pair.j)]);
-    return first + second - (vector + b - a + motion.strain.cwiseProduct(vector)).norm();
-}
-
-void ImplicitSintering::choose_candidates(const Motion& guess, const Motion& other) {
-    const std::vector<Pair>& pairs = packing_.pairs();
-    candidates_.among.resize(pairs.size());
-    const double radius = packing_.mean_radius(), reach = least_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < pairs.size(); ++row) {
-        const auto [first, second] = packing_.radii(pairs[row]);
-        const double overlap = first + second - packing_.vector(pairs[row]).norm();
-        const double closing = std::max(end_overlap(pairs[row], guess), end_overlap(pairs[row], other)) - overlap;
-        candidates_.among[row] = overlap + reach + guess_margin * std::max(0.0, closing) > 0.0;
-    }
-}
-
-void ImplicitSintering::gather_candidates(const std::vector<double>& diffusion) {
-    // Forces in a unit that makes stiffness a plain number near one, whatever the sizes, times and temperatures.
-    const double radius = packing_.mean_radius();
-    unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
-            (physics::normal_viscosity_factor(settings_.constants, 0.5 * radius) * radius * radius);
-    const std::vector<Pair>& pairs = packing_.pairs();
-    candidates_.pairs.clear();
-    candidates_.touching.clear();
-    candidates_.sticking.clear();
-    candidates_.chosen.clear();
-    for (std::size_t row = 0; row < pairs.size(); ++row) {
-        if (!candidates_.among[row]) continue;
-        candidates_.chosen.push_back(pairs[row]);
-        const auto [first, second] = packing_.radii(pairs[row]);
-        const std::vector<std::int32_t>& material = packing_.particles().material;
-        const bool rigid = kinetics_.any_rigid() && kinetics_.rigid(kinetics_.row(material[static_cast<std::size_t>(pairs[row].i)],
-                                                                                  material[static_cast<std::size_t>(pairs[row].j)]));
-        const double overlap = first + second - packing_.vector(pairs[row]).norm();
-        const bool sticks = rigid && overlap > -sticking_gap * physics::reduced_radius(first, second);
-        if (overlap >= 0.0 || sticks) candidates_.touching.push_back(pairs[row]);
-        (sticks ? candidates_.sticking : candidates_.pairs).push_back(pairs[row]);
-    }
-    candidates_.steps.resize(candidates_.pairs.size());
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < candidates_.pairs.size(); ++row) candidates_.steps[row] = pair_step(candidates_.pairs[row], diffusion);
-}
-
-bool ImplicitSintering::complete(const Motion& motion) const {
-    // Pairs that the solve has left out, of a list that may have been made anew since.
-    const std::vector<Pair>& pairs = packing_.pairs();
-    std::size_t touching = 0, known = 0;
-#pragma omp parallel for schedule(static) reduction(+ : touching)
-    for (std::size_t row = 0; row < pairs.size(); ++row) touching += end_overlap(pairs[row], motion) > 0.0;
-#pragma omp parallel for schedule(static) reduction(+ : known)
-    for (std::size_t row = 0; row < candidates_.chosen.size(); ++row) known += end_overlap(candidates_.chosen[row], motion) > 0.0;
-    return touching == known;
-}
-
-void ImplicitSintering::turn_to_nodes(const RigidClusters& clusters) {
-    if (candidates_.sticking.empty()) return;
-    struct Row {
-        Pair pair;
-        PairStep step;
-    };
-    std::vector<Row> rows;
-    for (std::size_t row = 0; row < candidates_.pairs.size(); ++row) {
-        bool turned = false;
-        const Pair seen = clusters.seen(candidates_.pairs[row], turned);
-        if (RigidClusters::inert(seen)) continue;
-        PairStep step = candidates_.steps[row];
-        if (turned) step.vector = -step.vector;
-        step.lever = pair_vector(packing_.box(), clusters.places(), seen);
-        rows.push_back({seen, step});
-    }
-    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-        return std::tie(a.pair.i, a.pair.j, a.pair.image) < std::tie(b.pair.i, b.pair.j, b.pair.image);
-    });
-    candidates_.pairs.clear();
-    candidates_.steps.clear();
-    for (const Row& row : rows) {
-        candidates_.pairs.push_back(row.pair);
-        candidates_.steps.push_back(row.step);
-    }
-}
-
 double ImplicitSintering::first_duration() {
     const std::vector<double> each(kinetics_.diffusion_at(kinetics_.schedule().highest()));
-    unit_ = 1.0;
     double shortest = std::numeric_limits<double>::infinity(), overlap = 0.0;
     std::size_t contacts = 0;
     std::vector<PairStep> steps;
     for (const Pair& pair : packing_.pairs()) {
-        steps.push_back(pair_step(pair, each));
+        steps.push_back(candidates_.pair_step(pair, each, 1.0));
         if (steps.back().overlap < 0.0) continue;
         overlap += steps.back().overlap / steps.back().reduced_radius;
         ++contacts;
@@ -168,7 +56,7 @@ double ImplicitSintering::first_duration() {
 Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& locked) const {
     // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that contacts
     // do reach through, so that loose clusters move with the flow of the whole.
-    const std::array<bool, 3> percolates = percolating_axes(packing_.size(), candidates_.touching);
+    const std::array<bool, 3> percolates = percolating_axes(packing_.size(), candidates_.touching());
     std::vector<Vec3> basis;
     Vec3 followers = Vec3::Zero();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -195,20 +83,19 @@ Motion ImplicitSintering::guess_from(const Motion& motion, double factor) const 
 }
 
 Motion ImplicitSintering::solve(const Motion* first, const Motion& guess, const std::vector<double>& diffusion, StepReport& report) {
-    choose_candidates(guess, first ? *first : guess);
-    gather_candidates(diffusion);
-    const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking);
-    turn_to_nodes(clusters);
+    candidates_.choose(guess, first ? *first : guess, diffusion);
+    const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
+    candidates_.turn_to_nodes(clusters);
     StepSettings settings;
     settings.allowed_strain = allowed_strain(clusters.locked());
-    settings.pressure = unit_ * settings_.pressure;
+    settings.pressure = candidates_.unit() * settings_.pressure;
     settings.solver_tolerance = settings_.solver_tolerance;
-    SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs, settings);
+    SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs(), settings);
     Motion motion = clusters.nodes(guess);
     project(motion, settings.allowed_strain);
-    report = first ? solver.second_order(candidates_.steps, clusters.nodes(*first), motion) : solver.first_order(candidates_.steps, motion);
+    report = first ? solver.second_order(candidates_.steps(), clusters.nodes(*first), motion) : solver.first_order(candidates_.steps(), motion);
     for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
-        report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / unit_ : 0.0;
+        report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
     newton_ += report.newton;
     conjugate_gradients_ += report.conjugate_gradients;
     return clusters.particles(motion, packing_.particles().position);
@@ -231,7 +118,7 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double unti
             trial.closing = packing_.closing_bound(trial.motion);
             trial.leapt = trial.closing > largest_closing * radius;  // no list of pairs is made for such a leap: the step is too long
             if (!trial.leapt) packing_.pairs_within(trial.closing);
-        } while (!trial.leapt && !complete(trial.motion));
+        } while (!trial.leapt && !candidates_.complete(trial.motion));
     };
     solve_all(nullptr);
     trial.first_order = trial.motion;

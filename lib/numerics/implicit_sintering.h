@@ -1,8 +1,7 @@
 // implicit_sintering.h: overdamped sintering in implicit steps, with step control and exact landing on wanted times and densities.
 #pragma once
 
-#include "numerics/rigid_clusters.h"
-#include "numerics/sinter_step.h"
+#include "numerics/candidates.h"
 #include "numerics/sintering.h"
 
 namespace kiln::numerics {
@@ -27,19 +26,6 @@ class ImplicitSintering : public SinteringMethod {
         double closing = 0.0;                               // bound of how much any gap closed, m
         bool leapt = false;                                 // further than any list of pairs reaches
     };
-    /// Pairs that may touch in a step, as the nodes see them.
-    struct Candidates {
-        std::vector<Pair> pairs;
-        std::vector<PairStep> steps;
-        std::vector<Pair> chosen, touching, sticking;  // of particles: all, those that touch, those that stick
-        std::vector<std::uint8_t> among;               // of all listed pairs: is it chosen
-    };
-    PairStep pair_step(const Pair& pair, const std::vector<double>& diffusion) const;
-    double end_overlap(const Pair& pair, const Motion& motion) const;
-    void choose_candidates(const Motion& guess, const Motion& other);
-    void gather_candidates(const std::vector<double>& diffusion);
-    bool complete(const Motion& motion) const;
-    void turn_to_nodes(const RigidClusters& clusters);
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
     Motion solve(const Motion* first, const Motion& guess, const std::vector<double>& diffusion, StepReport& report);
     Trial attempt(double duration, double until, const Motion& guess);
@@ -51,7 +37,6 @@ class ImplicitSintering : public SinteringMethod {
     StepRecord finish(const Trial& trial, double duration);
 
     Candidates candidates_;
-    double unit_ = 1.0;                // of forces in a step, over 1 N
     Motion last_motion_;               // of the last step, the guess of the next one
     double last_rate_ = 0.0, rate_before_ = 0.0;  // of the logarithm of the density in the last two steps, 1/s of equivalent time
     double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m

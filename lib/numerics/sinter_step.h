@@ -7,7 +7,6 @@
 // the exact integral of the viscosity over the overlap: an isolated pair is exact for a step of any length.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 

@@ -1,0 +1,52 @@
+// candidates.h: the pairs that take part in a step: those that touch, and those that are expected to come to touch in it.
+#pragma once
+
+#include <vector>
+
+#include "numerics/kinetics.h"
+#include "numerics/packing.h"
+#include "numerics/rigid_clusters.h"
+#include "numerics/sinter_step.h"
+#include "physics/sinter_contact.h"
+
+namespace kiln::numerics {
+
+class Candidates {
+   public:
+    /// Refers to packing and kinetics as long as it lives.
+    Candidates(const Packing& packing, const Kinetics& kinetics, const physics::ContactConstants& constants)
+        : packing_(packing), kinetics_(kinetics), constants_(constants) {}
+
+    /// Chooses from the packing's list by two motions that the step may turn out to make.
+    /// diffusion: integral of Delta over the step for each pair of materials, m5/N.
+    void choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion);
+
+    /// True if no pair of the packing's list that was not chosen touches after the motion.
+    bool complete(const Motion& motion) const;
+
+    /// Pairs and what they bring into the step, as the nodes of rigid clusters see them.
+    void turn_to_nodes(const RigidClusters& clusters);
+
+    /// What a pair brings into a step; forces over `unit`.
+    PairStep pair_step(const Pair& pair, const std::vector<double>& diffusion, double unit) const;
+
+    const std::vector<Pair>& pairs() const { return pairs_; }
+    const std::vector<PairStep>& steps() const { return steps_; }        // a row a pair
+    const std::vector<Pair>& touching() const { return touching_; }      // of particles
+    const std::vector<Pair>& sticking() const { return sticking_; }      // of particles that do not diffuse, and touch
+    double unit() const { return unit_; }                                // of the steps' forces: what 1 N is in it
+
+   private:
+    double overlap(const Pair& pair) const;                               // m
+    double end_overlap(const Pair& pair, const Motion& motion) const;     // m, after the motion
+    bool rigid(const Pair& pair) const;
+
+    const Packing& packing_;
+    const Kinetics& kinetics_;
+    physics::ContactConstants constants_;
+    std::vector<Pair> pairs_, chosen_, touching_, sticking_;
+    std::vector<PairStep> steps_;
+    double unit_ = 1.0;
+};
+
+}  // namespace kiln::numerics
