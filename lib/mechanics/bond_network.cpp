@@ -106,6 +106,8 @@ void add_bond(BondedBody& body, const State& state, const BondModel& model, cons
     const Moduli b = moduli[at(state.particles.material[at(second)])];
     body.network.pair.push_back(nodes);
     body.network.vector.push_back(vector);
+    body.network.radius.push_back(
+        std::min({bonds.radius[at(row)], state.particles.radius[at(first)], state.particles.radius[at(second)]}));
     body.network.stiffness.push_back(physics::bond_stiffness(model.law, model.shear, harmonic_mean(a.young, b.young),
                                                              harmonic_mean(a.shear, b.shear),
                                                              {state.particles.radius[at(first)], state.particles.radius[at(second)],
@@ -224,6 +226,13 @@ std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displ
         loads[bond].tension = loads[bond].force.dot(d.normalized());
     }
     return loads;
+}
+
+physics::BondStress stress_of(const BondNetwork& network, std::size_t bond, const BondLoad& load) {
+    const Vec3 along = network.vector[bond].normalized();
+    const double torsion = load.moment.dot(along);
+    return physics::bond_stress(load.tension, (load.force - load.tension * along).norm(), (load.moment - torsion * along).norm(),
+                                std::abs(torsion), network.radius[bond]);
 }
 
 Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads) {

@@ -7,6 +7,7 @@
 #include "core/state.h"
 #include "mechanics/block_matrix.h"
 #include "physics/bond_law.h"
+#include "physics/bond_stress.h"
 
 namespace kiln::mechanics {
 
@@ -16,6 +17,7 @@ struct BondNetwork {
     Vec3 period = Vec3::Zero();  // m, box length along a periodic axis, else 0
     std::vector<std::array<std::int32_t, 2>> pair;
     std::vector<Vec3> vector;  // m, from the first node to the second (or its image)
+    std::vector<double> radius;  // m, of the bond, at most that of its smaller sphere
     std::vector<physics::BondStiffness> stiffness;
     double rotation_length = 1.0;  // m
 
@@ -64,6 +66,9 @@ struct BondLoad {
 /// Loads of all bonds under a displacement field and a uniform strain of the whole (symmetric 3x3; zero for a free network).
 std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement,
                                  const Eigen::Matrix3d& strain = Eigen::Matrix3d::Zero());
+
+/// Greatest stresses in a bond of the network under its load.
+physics::BondStress stress_of(const BondNetwork& network, std::size_t bond, const BondLoad& load);
 
 /// Sum over the bonds at each node of what they do to it: minus the stiffness matrix times the displacement, when the strain is
 /// zero.

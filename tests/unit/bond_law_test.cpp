@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "physics/bond_law.h"
+#include "physics/bond_stress.h"
 #include "physics/hertz.h"
 #include "tests/physics/relative.h"
 
@@ -122,6 +123,15 @@ TEST_CASE("Timoshenko's beam: 12 E I/L3 for a slender cylinder, Cowper's shear f
     const double nu = E / (2.0 * G) - 1.0, kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
     const BondStiffness stout = bond_stiffness(BondLaw::centre, BondShear::timoshenko, E, G, {1e-6, 1e-6, 1e-9, 1e-6, 1e-9});
     CHECK(stout.shear == relative(kappa * G * pi * 1e-12 / 1e-9, 1e-5));
+}
+
+TEST_CASE("bond stress is force over section plus moment over section modulus, and pressed sections have none of their own") {
+    const double r = 2e-9, A = pi * r * r, I = A * r * r / 4.0;
+    const BondStress stress = bond_stress(3e-6, 2e-6, 5e-15, 7e-15, r);
+    CHECK(stress.tensile == relative(3e-6 / A + 5e-15 * r / I, 1e-14));
+    CHECK(stress.shear == relative(2e-6 / A + 7e-15 * r / (2.0 * I), 1e-14));
+    CHECK(bond_stress(-3e-6, 0.0, 0.0, 0.0, r).tensile == relative(-3e-6 / A, 1e-14));
+    CHECK(bond_stress(0.0, 0.0, 1e-15, 0.0, 2.0 * r).tensile == relative(bond_stress(0.0, 0.0, 1e-15, 0.0, r).tensile / 8.0, 1e-14));
 }
 
 TEST_CASE("Hertz contact with a wall: force is the slope of the energy, stiffness that of the force, none without overlap") {

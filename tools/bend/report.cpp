@@ -80,17 +80,23 @@ State bent_state(const Result& result, Json history) {
         rotation.emplace_back(freedoms.tail<3>() / network.rotation_length);
         state.particles.position[node] += displacement.back();
     }
-    std::vector<double> tension;
-    for (const mechanics::BondLoad& load : mechanics::bond_loads(network, result.peak.displacement)) {
-        force.push_back(load.force);
-        moment.push_back(load.moment);
-        tension.push_back(load.tension);
+    std::vector<double> tension, tensile, shear;
+    const std::vector<mechanics::BondLoad> loads = mechanics::bond_loads(network, result.peak.displacement);
+    for (std::size_t bond = 0; bond < loads.size(); ++bond) {
+        force.push_back(loads[bond].force);
+        moment.push_back(loads[bond].moment);
+        tension.push_back(loads[bond].tension);
+        const physics::BondStress stress = mechanics::stress_of(network, bond, loads[bond]);
+        tensile.push_back(stress.tensile);
+        shear.push_back(stress.shear);
     }
     put(state.particles.other, vectors("displacement", displacement));
     put(state.particles.other, vectors("rotation", rotation));
     put(state.bonds->other, vectors("force", force));
     put(state.bonds->other, {"normal_force", {{tension.size()}, std::move(tension)}});
     put(state.bonds->other, vectors("moment", moment));
+    put(state.bonds->other, {"tensile_stress", {{tensile.size()}, std::move(tensile)}});
+    put(state.bonds->other, {"shear_stress", {{shear.size()}, std::move(shear)}});
     state.history = std::move(history);
     return state;
 }

@@ -12,7 +12,8 @@ Json summary(const Result& result);
 Json document(const Result& result, const Options& options, Json history);
 
 /// The bar under the greatest force: displaced particles with `displacement` (m) and `rotation` (rad); bonds with `force` (N, on
-/// the first particle), `normal_force` (N, tension positive) and `moment` (N m, on the first particle at the bond's middle).
+/// the first particle), `normal_force` (N, tension positive), `moment` (N m, on the first particle at the bond's middle) and the
+/// greatest `tensile_stress` and `shear_stress` (Pa, see physics/bond_stress.h).
 State bent_state(const Result& result, Json history);
 
 }  // namespace kiln::bend
