@@ -22,7 +22,7 @@ std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-ContactProblem::ContactProblem(const BondNetwork& network, ElasticSolver& solver, std::vector<WallContact> contacts)
+ContactProblem::ContactProblem(const BondNetwork& network, ElasticSolver* solver, std::vector<WallContact> contacts)
     : network_(network), solver_(solver), contacts_(std::move(contacts)) {
     amplitude_ = Eigen::VectorXd::Zero(1);
     closing_.resize(static_cast<Eigen::Index>(contacts_.size()), 1);
@@ -153,7 +153,7 @@ Vector ContactProblem::combine(bool forces) const {
 /// Adds the body's response to unbalanced forces to the space, orthogonal in energy to the fields there and free of rigid motion.
 void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     Field field;
-    iterations += solver_.solve(unbalanced, field.displacement, response_tolerance).iterations;
+    iterations += solver_->solve(unbalanced, field.displacement, response_tolerance).iterations;
     const double all = dot(field.displacement, unbalanced);
     double rest = 0.0;  // energy that the fields there do not have
     for (int pass = 0; pass == 0 || (pass == 1 && rest < second_pass * all); ++pass) {
@@ -172,7 +172,7 @@ void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     }
     if (!(largest > 0.0)) return;
     for (Vec6& each : field.displacement) each /= largest;
-    solver_.forces(field.displacement, field.force);
+    solver_->forces(field.displacement, field.force);
     field.stiffness = dot(field.displacement, field.force);
     if (field.stiffness * largest * largest > least_novelty * all) add_field(std::move(field));
 }

@@ -12,11 +12,26 @@ namespace kiln::mechanics {
 /// remains. Hertz force at the overlap along the normal, and its share along z.
 struct WallContact {
     std::int32_t node;
-    bool punch;      // pressed from above by the punch, else from below by a support
-    double gap;      // m, along z, at rest with the punch travel zero
-    double cosine;   // of the angle between the contact normal and z
-    double radius;   // m, of the particle
-    double modulus;  // Pa, contact modulus
+    std::int32_t cylinder;
+    bool punch;            // pressed from above by the punch, else from below by a support
+    double gap;            // m, along z, at rest with the punch travel zero
+    double cosine;         // of the angle between the contact normal and z
+    double radius;         // m, of the particle
+    double modulus;        // Pa, contact modulus
+    double shear_modulus;  // Pa, the same for Mindlin's stiffness
+};
+
+/// Rigid cylinder along y, where it stands when it just touches the body; m.
+struct Cylinder {
+    double x, z;  // of its axis
+    double radius;
+    bool punch;  // moves downwards with the punch
+};
+
+/// The rigid bodies and all particles that may touch them.
+struct Tooling {
+    std::vector<Cylinder> cylinders;
+    std::vector<WallContact> contacts;
 };
 
 struct Equilibrium {
@@ -36,16 +51,20 @@ struct Equilibrium {
 /// elastic response to the forces that the last minimum left unbalanced. The bonds' matrix is preconditioned once; a minimum in the
 /// space is a small dense problem; the space serves all forces.
 class ContactProblem {
-   public:
-    ContactProblem(const BondNetwork& network, ElasticSolver& solver, std::vector<WallContact> contacts);
+ public:
+    /// solver: null for a body that is only seated.
+    ContactProblem(const BondNetwork& network, ElasticSolver* solver, std::vector<WallContact> contacts);
 
     /// The body as rigid, seated under the punch force, N: where contact begins as the force goes to zero. m, travel of the punch.
     double seat(double force);
 
+    /// Of every node, m and rad times the rotation length, as last found.
+    Vector displacement() const { return combine(false); }
+
     /// Equilibrium under a punch force > 0, N, until `residual` is at most `tolerance` or the space has `most_fields` fields.
     Equilibrium solve(double force, double tolerance);
 
-   private:
+ private:
     struct Field {
         Vector displacement, force;  // force: stiffness times displacement; empty for a rigid motion
         double stiffness;            // displacement . force, N/m
@@ -65,7 +84,7 @@ class ContactProblem {
     Vector combine(bool forces) const;
 
     const BondNetwork& network_;
-    ElasticSolver& solver_;
+    ElasticSolver* solver_;
     std::vector<WallContact> contacts_;
     std::vector<Field> fields_;
     Eigen::VectorXd amplitude_;  // of the punch travel, then of the fields, m

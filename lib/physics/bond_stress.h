@@ -1,7 +1,7 @@
 // bond_stress.h: greatest stresses in a bond, by beam theory.
 //
-// Potyondy & Cundall 2004, Int. J. Rock Mech. Min. Sci. 41, 1329: sigma_max = F_n/A + |M_bending| Rb/I, tau_max = |F_shear|/A + |M_torsion| Rb/J, with
-// A = pi Rb^2, I = A Rb^2/4 and J = 2 I. Moments are those at the bond's middle.
+// Potyondy & Cundall 2004 (Int. J. Rock Mech. Min. Sci. 41, 1329): sigma_max = F_n/A + |M_bending| Rb/I and
+// tau_max = |F_shear|/A + |M_torsion| Rb/J, with A = pi Rb^2, I = A Rb^2/4 and J = 2 I. Moments are those at the bond's middle.
 #pragma once
 
 #include <numbers>

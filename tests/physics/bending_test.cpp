@@ -1,15 +1,17 @@
 // bending_test.cpp: static three-point bending against beam theory, its independence of scale, load and fixture, and its hard
 // cases.
+#include "physics/bending.h"
+
 #include <doctest/doctest.h>
 #include <omp.h>
 
 #include <bit>
 #include <cmath>
 
-#include "physics/bending.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "tools/bend/report.h"
+#include "tools/bend/static_test.h"
 
 using namespace kiln;
 using namespace kiln::bend;
@@ -88,7 +90,7 @@ TEST_CASE("the wanted deflection or force is met, cycles repeat, unloading retra
 
 TEST_CASE("forces and moments of the cylinders balance, contacts only press, and travel grows with force") {
     const Result result = tested(test::make_rough_bar({36, 7, 7}));
-    const std::vector<mechanics::WallContact> contacts = find_contacts(result.specimen, result.fixture);
+    const std::vector<mechanics::WallContact> contacts = find_contacts(result.specimen, result.fixture).contacts;
     double up = 0.0, down = 0.0, pitch = 0.0, roll = 0.0;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
         const double force = result.peak.contact_force[c];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "physics/bending.h"
 #include "physics/hertz.h"
 #include "physics/materials.h"
 
@@ -13,9 +14,10 @@ namespace kiln::bend {
 
 namespace {
 
-constexpr double default_span = 0.8;     // of the length
-constexpr double default_radius = 0.75;  // of the height, as in ASTM C1161
-constexpr double steepest_cosine = 0.5;  // of a contact normal against z
+constexpr double default_span = 0.8;         // of the length
+constexpr double default_deflection = 1e-3;  // of the height
+constexpr double default_radius = 0.75;      // of the height, as in ASTM C1161
+constexpr double steepest_cosine = 0.5;      // of a contact normal against z
 constexpr double reach = 0.1;  // of the height: particles that far behind the foremost one, and two radii more, may come to touch
 
 struct Sphere {
@@ -35,9 +37,9 @@ std::vector<Sphere> spheres_of(const Specimen& specimen) {
     return spheres;
 }
 
-/// One cylinder's contacts: side +1 for a punch above, -1 for a support below.
-void add_contacts(std::vector<mechanics::WallContact>& contacts, const std::vector<Sphere>& spheres, const Specimen& specimen,
-                  double x, double cylinder_radius, double side) {
+/// One cylinder and its contacts: side +1 for a punch above, -1 for a support below.
+void add_cylinder(mechanics::Tooling& tooling, const std::vector<Sphere>& spheres, const Specimen& specimen, double x,
+                  double cylinder_radius, double side) {
     struct Candidate {
         const Sphere* sphere;
         double height, cosine;  // height, m: of the cylinder's axis above the sphere's side when they touch
@@ -52,16 +54,19 @@ void add_contacts(std::vector<mechanics::WallContact>& contacts, const std::vect
         foremost = std::max(foremost, candidates.back().height);
         largest = std::max(largest, sphere.radius);
     }
+    if (candidates.empty()) {
+        throw Error(side > 0.0 ? "the punch touches no particle" : "a support touches no particle");
+    }
+    const auto cylinder = static_cast<std::int32_t>(tooling.cylinders.size());
+    tooling.cylinders.push_back({x, side * foremost, cylinder_radius, side > 0.0});
     for (const auto& [sphere, height, cosine] : candidates) {
         const double gap = foremost - height;
         if (gap > reach * specimen.size[2] + 2.0 * largest) continue;
         const Material& material = specimen.state.materials[static_cast<std::size_t>(sphere->material)];
-        contacts.push_back({sphere->node, side > 0.0, gap, cosine, sphere->radius,
-                            physics::contact_modulus(physics::required(material.young_modulus, material, "young_modulus"),
-                                                     physics::required(material.poisson_ratio, material, "poisson_ratio"))});
-    }
-    if (candidates.empty()) {
-        throw Error(side > 0.0 ? "the punch touches no particle" : "a support touches no particle");
+        const double young = physics::required(material.young_modulus, material, "young_modulus");
+        const double poisson = physics::required(material.poisson_ratio, material, "poisson_ratio");
+        tooling.contacts.push_back({sphere->node, cylinder, side > 0.0, gap, cosine, sphere->radius,
+                                    physics::contact_modulus(young, poisson), physics::contact_shear_modulus(young, poisson)});
     }
 }
 
@@ -109,13 +114,22 @@ Fixture place_fixture(const Specimen& specimen, const Options& options) {
     return fixture;
 }
 
-std::vector<mechanics::WallContact> find_contacts(const Specimen& specimen, const Fixture& fixture) {
+double greatest_deflection(const Specimen& specimen, const Options& options) {
+    return options.max_deflection > 0.0 ? options.max_deflection : default_deflection * specimen.size[2];
+}
+
+double estimated_stiffness(const Specimen& specimen, const Fixture& fixture) {
+    const double softness = physics::bending_modulus(1.0, fixture.span, specimen.size[1], specimen.size[2], specimen.poisson_ratio);
+    return specimen.relative_density * specimen.young_modulus / softness;
+}
+
+mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture) {
     const std::vector<Sphere> spheres = spheres_of(specimen);
-    std::vector<mechanics::WallContact> contacts;
-    add_contacts(contacts, spheres, specimen, fixture.middle - fixture.span / 2.0, fixture.radius, -1.0);
-    add_contacts(contacts, spheres, specimen, fixture.middle + fixture.span / 2.0, fixture.radius, -1.0);
-    add_contacts(contacts, spheres, specimen, fixture.middle, fixture.radius, 1.0);
-    return contacts;
+    mechanics::Tooling tooling;
+    add_cylinder(tooling, spheres, specimen, fixture.middle - fixture.span / 2.0, fixture.radius, -1.0);
+    add_cylinder(tooling, spheres, specimen, fixture.middle + fixture.span / 2.0, fixture.radius, -1.0);
+    add_cylinder(tooling, spheres, specimen, fixture.middle, fixture.radius, 1.0);
+    return tooling;
 }
 
 Gauge::Gauge(const Specimen& specimen, const Fixture& fixture) {

@@ -20,17 +20,23 @@ struct Fixture {
 /// piece does not reach from support to support.
 Fixture place_fixture(const Specimen& specimen, const Options& options);
 
+/// Deflection at which unloading begins, m: the option's, or its default.
+double greatest_deflection(const Specimen& specimen, const Options& options);
+
+/// Force over deflection if the bar were as stiff as the solid's share of its volume, N/m: where searches begin.
+double estimated_stiffness(const Specimen& specimen, const Fixture& fixture);
+
 /// Particles that a cylinder can come to touch; each cylinder just touches its nearest one. Throws Error if one finds none.
-std::vector<mechanics::WallContact> find_contacts(const Specimen& specimen, const Fixture& fixture);
+mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture);
 
 /// Reads a deflection from the displacements of nodes, m: the lower face under the load, downwards, against the mean of the
 /// cross-sections above the two supports. Local dents of the contacts hardly enter, rigid motions not at all.
 class Gauge {
-   public:
+ public:
     Gauge(const Specimen& specimen, const Fixture& fixture);
     double read(const mechanics::Vector& displacement) const;
 
-   private:
+ private:
     struct Weight {
         std::int32_t node;
         double weight;

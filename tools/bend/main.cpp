@@ -4,7 +4,9 @@
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "io/files.h"
+#include "tools/bend/dynamic_test.h"
 #include "tools/bend/report.h"
+#include "tools/bend/static_test.h"
 
 namespace {
 
@@ -32,7 +34,8 @@ int run(int argc, char** argv) {
             progress.show(done, name);
             return !cli::stop_requested();
         };
-        const bend::Result result = bend::bend_static(std::move(*state), options, watch);
+        const auto test = options.method == bend::Method::motion ? bend::bend_dynamic : bend::bend_static;
+        const bend::Result result = test(std::move(*state), options, watch);
         if (cli::stop_requested()) return cli::interrupted;
         progress.clear();
         if (!result.converged) cli::warn("bend", name + ": some forces stayed unbalanced; see \"residual\" in the result");

@@ -20,6 +20,9 @@ constexpr const char* description =
 
 constexpr const char* footer =
     "Static: bonds are springs, particles touch the cylinders by Hertz's law and part from them freely; there is no friction.\n"
+    "Dynamic: the same by leapfrog steps, with Hertz-Mindlin contacts between particles without a bond as well. Of the work of "
+    "the\n"
+    "punch it says what was stored and what was dissipated.\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
     "  bend --span 8um --punch-radius 2um --max-force 60uN --states bent.kiln bonded.kiln -o bend.json\n"
@@ -51,13 +54,43 @@ void Options::add_to(CLI::App& app) {
         ->default_str("1e-6");
     app.add_option("--states", states, "also write the bar bent by the greatest force, with the forces in its bonds, to this file")
         ->type_name("FILE");
+    add_dynamic(app);
     app.callback([this, &app] {
-        const std::pair<const char*, double> quantities[] = {
-            {"--span", span}, {"--punch-radius", punch_radius}, {"--max-deflection", max_deflection}, {"--max-force", max_force}};
+        const std::pair<const char*, double> quantities[] = {{"--span", span},
+                                                             {"--punch-radius", punch_radius},
+                                                             {"--max-deflection", max_deflection},
+                                                             {"--max-force", max_force},
+                                                             {"--punch-velocity", punch_velocity}};
         for (const auto& [name, value] : quantities) {
             if (app.count(name) > 0 && !(value > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
         }
+        for (const char* name : {"--punch-velocity", "--damping", "--mass-scaling", "--friction"}) {
+            if (app.count(name) > 0 && method != Method::motion) throw CLI::ValidationError(name, "needs --method dynamic");
+        }
     });
 }
+
+void Options::add_dynamic(CLI::App& app) {
+    app.add_option_function<std::string>(
+           "--method", [this](const std::string& text) { method = text == "dynamic" ? Method::motion : Method::equilibria; },
+           "static, a sequence of equilibria; dynamic, the motion of all particles in time, for reference: thousands of times the "
+           "work")
+        ->check(CLI::IsMember({"static", "dynamic"}))
+        ->default_str("static");
+    cli::add_quantity(app, "--punch-velocity", punch_velocity, cli::Dimension::velocity, "speed of the punch, dynamic",
+                      "the greatest deflection in 20 of the bar's own periods");
+    app.add_option("--damping", damping, "share of the unbalanced force that brakes each particle, dynamic (plain number below 1)")
+        ->check(CLI::Range(0.0, 0.99))
+        ->capture_default_str();
+    app.add_option("--friction", friction, "coefficient of friction of all contacts, dynamic (plain number); 0: cylinders roll")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    app.add_option("--mass-scaling", mass_scaling,
+                   "factor on the mass of the particles, dynamic (plain number); time steps and periods grow with its square root")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+}
+
+std::string name_of(Method method) { return method == Method::motion ? "dynamic" : "static"; }
 
 }  // namespace kiln::bend

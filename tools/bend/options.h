@@ -8,7 +8,14 @@
 
 namespace kiln::bend {
 
-/// Lengths and forces that are zero stand for the default that --help states.
+enum class Method {
+    equilibria,  // static
+    motion,      // dynamic
+};
+
+std::string name_of(Method method);
+
+/// Lengths, velocities and forces that are zero stand for the default that --help states.
 struct Options {
     double span = 0.0;            // m
     double punch_radius = 0.0;    // m
@@ -18,9 +25,17 @@ struct Options {
     int points = 6;  // of a branch
     double tolerance = 1e-6;
     mechanics::BondModel model;
+    Method method = Method::equilibria;
+    double punch_velocity = 0.0;  // m/s
+    double damping = 0.7;
+    double friction = 0.0;
+    double mass_scaling = 1.0;
     std::string states;  // file of the deformed states; empty for none
 
     void add_to(CLI::App& app);
+
+ private:
+    void add_dynamic(CLI::App& app);
 };
 
 }  // namespace kiln::bend

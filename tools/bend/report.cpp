@@ -19,6 +19,20 @@ void put(std::vector<NamedArray>& arrays, NamedArray array) {
     arrays.push_back(std::move(array));
 }
 
+void add_motion(Json& json, const DynamicRun& run, const Options& options) {
+    json["energy"].update(Json{{"work", run.energy.work},
+                               {"stored_at_end", run.energy.bonds + run.energy.contacts},
+                               {"kinetic_at_end", run.energy.kinetic},
+                               {"damping", run.energy.damping},
+                               {"friction", run.energy.friction}});
+    json["time_step"] = run.time_step;
+    json["steps"] = run.steps;
+    json["punch_velocity"] = run.velocity;
+    json["damping"] = options.damping;
+    json["friction"] = options.friction;
+    json["mass_scaling"] = options.mass_scaling;
+}
+
 }  // namespace
 
 Json summary(const Result& result) {
@@ -46,7 +60,7 @@ Json document(const Result& result, const Options& options, Json history) {
               {"punch_radius", result.fixture.radius},
               {"bond_law", physics::name_of(options.model.law)},
               {"bond_shear", physics::name_of(options.model.shear)},
-              {"method", "static"},
+              {"method", name_of(options.method)},
               {"young_modulus", specimen.young_modulus},
               {"poisson_ratio", specimen.poisson_ratio},
               {"particles", specimen.body.particle.size()},
@@ -58,9 +72,13 @@ Json document(const Result& result, const Options& options, Json history) {
         force.push_back(point.force);
     }
     json["curve"] = {{"deflection", deflection}, {"punch", punch}, {"force", force}};
-    json["iterations"] = result.iterations;
-    json["residual"] = result.residual;
     json["energy"] = {{"bonds", result.peak.bond_energy}, {"contacts", result.peak.contact_energy}, {"error", result.energy_error}};
+    if (options.method == Method::motion) {
+        add_motion(json, result.dynamic, options);
+    } else {
+        json["iterations"] = result.iterations;
+        json["residual"] = result.residual;
+    }
     json.update(summary(result));
     json["history"] = std::move(history);
     return json;
@@ -81,7 +99,7 @@ State bent_state(const Result& result, Json history) {
         state.particles.position[node] += displacement.back();
     }
     std::vector<double> tension, tensile, shear;
-    const std::vector<mechanics::BondLoad> loads = mechanics::bond_loads(network, result.peak.displacement);
+    const std::vector<mechanics::BondLoad>& loads = result.loads;
     for (std::size_t bond = 0; bond < loads.size(); ++bond) {
         force.push_back(loads[bond].force);
         moment.push_back(loads[bond].moment);

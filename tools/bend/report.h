@@ -1,7 +1,7 @@
 // report.h: the documents that bend writes.
 #pragma once
 
-#include "tools/bend/static_test.h"
+#include "tools/bend/result.h"
 
 namespace kiln::bend {
 

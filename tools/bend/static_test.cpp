@@ -5,14 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "physics/bending.h"
-
 namespace kiln::bend {
 
 namespace {
 
-constexpr double default_deflection = 1e-3;  // of the height
-constexpr double seating_force = 1e-9;       // of the greatest force: where the punch's travel is zero
+constexpr double seating_force = 1e-9;  // of the greatest force: where the punch's travel is zero
 constexpr double deflection_tolerance = 1e-6;
 constexpr double trial_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
 constexpr int most_trials = 12;
@@ -24,10 +21,10 @@ struct Level {
 
 /// The equilibria of one test.
 class Levels {
-   public:
+ public:
     Levels(const Specimen& specimen, const Fixture& fixture, double tolerance)
         : solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
-          problem_(specimen.body.network, solver_, find_contacts(specimen, fixture)),
+          problem_(specimen.body.network, &solver_, find_contacts(specimen, fixture).contacts),
           gauge_(specimen, fixture),
           tolerance_(tolerance) {}
 
@@ -45,7 +42,7 @@ class Levels {
 
     mechanics::Equilibrium& last() { return last_; }
 
-   private:
+ private:
     Level solved(double force, double tolerance, Result& result) {
         last_ = problem_.solve(force, tolerance);
         result.iterations += last_.iterations;
@@ -62,20 +59,14 @@ class Levels {
     mechanics::Equilibrium last_;
 };
 
-/// Force that would give the deflection if the bar were as stiff as the solid's share of its volume, N.
-double estimated_force(const Specimen& specimen, const Fixture& fixture, double deflection) {
-    const double softness = physics::bending_modulus(1.0, fixture.span, specimen.size[1], specimen.size[2], specimen.poisson_ratio);
-    return specimen.relative_density * specimen.young_modulus * deflection / softness;
-}
-
 /// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
 Level peak_level(Levels& levels, const Specimen& specimen, const Fixture& fixture, const Options& options, Result& result) {
     if (options.max_force > 0.0) {
         levels.seat(seating_force * options.max_force);
         return levels.at(options.max_force, result);
     }
-    const double wanted = options.max_deflection > 0.0 ? options.max_deflection : default_deflection * specimen.size[2];
-    double force = estimated_force(specimen, fixture, wanted);
+    const double wanted = greatest_deflection(specimen, options);
+    double force = estimated_stiffness(specimen, fixture) * wanted;
     levels.seat(seating_force * force);
     Level level = levels.trial(force, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
@@ -129,6 +120,7 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     result.peak = std::move(equilibria.last());
     result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),
                                                              [](double force) { return force > 0.0; }));
+    result.loads = mechanics::bond_loads(result.specimen.body.network, result.peak.displacement);
     result.closed_gaps = closed_gaps(result.specimen, result.peak.displacement);
     const double greatest = levels.back().point.force;
     for (int point = options.points - 1; point > 0; --point) {

@@ -1,0 +1,148 @@
+// explicit_contacts.cpp: forces of Hertz-Mindlin contacts, and when to look for new ones.
+#include "mechanics/explicit_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/bond_motion.h"
+#include "physics/hertz.h"
+
+namespace kiln::mechanics {
+
+namespace {
+
+constexpr double margin = 0.1;            // of the mean radius: pairs with a smaller gap are watched
+constexpr int steps_between_checks = 64;  // particles move by a millionth of a radius in a step; see bend's time step
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+/// Velocity of a sphere's surface at `arm` from its centre; rotations are scaled by the rotation length.
+Vec3 surface_velocity(const Vec6& velocity, const Vec3& arm, double rotation_length) {
+    return velocity.head<3>() + velocity.tail<3>().cross(arm) / rotation_length;
+}
+
+}  // namespace
+
+ExplicitContacts::ExplicitContacts(const BondNetwork& network, std::vector<ElasticSphere> spheres, Tooling tooling, double friction)
+    : network_(network),
+      spheres_(std::move(spheres)),
+      tooling_(std::move(tooling)),
+      friction_(friction),
+      margin_(margin * network.rotation_length),
+      wall_stretch_(tooling_.contacts.size(), Vec3::Zero()) {
+    search(Vector(network.nodes(), Vec6::Zero()));
+}
+
+/// Pairs near each other now; springs of pairs that were near before are kept.
+void ExplicitContacts::search(const Vector& displacement) {
+    std::vector<PairContact> found = near_pairs(network_, spheres_, displacement, margin_);
+    std::vector<Vec3> stretch(found.size(), Vec3::Zero());
+    std::size_t old = 0;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const std::array key{found[k].i, found[k].j};
+        while (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} < key) ++old;
+        if (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} == key) stretch[k] = pair_stretch_[old];
+    }
+    pairs_ = std::move(found);
+    pair_stretch_ = std::move(stretch);
+    overlap_.resize(pairs_.size());
+    searched_at_ = displacement;
+}
+
+/// Moves the tangential spring along by `slide`, m, the way of the other surface against the sphere's; force on the sphere, N.
+Vec3 ExplicitContacts::held(const Touch& touch, const Vec3& slide, Vec3& stretch) {
+    const double stiffness = physics::mindlin_stiffness(touch.shear_modulus, touch.radius, touch.overlap);
+    const double limit = friction_ * physics::hertz_contact(touch.modulus, touch.radius, touch.overlap).force;
+    stretch += slide;
+    stretch -= stretch.dot(touch.normal) * touch.normal;
+    const double longest = limit / stiffness, length = stretch.norm();
+    if (length > longest) {
+        loss_ += limit * (length - longest);
+        stretch *= longest / length;
+    }
+    energy_ += 0.5 * stiffness * stretch.squaredNorm();
+    return stiffness * stretch;
+}
+
+void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force) {
+    const double length = network_.rotation_length;
+#pragma omp parallel for schedule(static)
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const PairContact& pair = pairs_[k];
+        const Vec3 shift = displacement[at(pair.j)].head<3>() - displacement[at(pair.i)].head<3>();
+        overlap_[k] = -physics::lengthening(pair.vector, shift) - pair.gap;
+    }
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        if (overlap_[k] <= 0.0) {
+            pair_stretch_[k].setZero();
+            continue;
+        }
+        const PairContact& pair = pairs_[k];
+        const std::size_t i = at(pair.i), j = at(pair.j);
+        const Vec3 normal = (pair.vector + displacement[j].head<3>() - displacement[i].head<3>()).normalized();
+        const physics::HertzContact hertz = physics::hertz_contact(pair.modulus, pair.radius, overlap_[k]);
+        const Vec3 arm_i = spheres_[i].radius * normal, arm_j = -spheres_[j].radius * normal;
+        Vec3 on_i = -hertz.force * normal;
+        energy_ += hertz.energy;
+        ++touching_pairs_;
+        if (friction_ > 0.0) {
+            const Vec3 slide = dt * (surface_velocity(velocity[j], arm_j, length) - surface_velocity(velocity[i], arm_i, length));
+            on_i += held({normal, overlap_[k], pair.radius, pair.modulus, pair.shear_modulus}, slide, pair_stretch_[k]);
+        }
+        force[i].head<3>() += on_i;
+        force[j].head<3>() -= on_i;
+        force[i].tail<3>() += arm_i.cross(on_i) / length;
+        force[j].tail<3>() -= arm_j.cross(on_i) / length;
+    }
+}
+
+void ExplicitContacts::add_walls(const Vector& displacement, const Vector& velocity, double travel, double punch_velocity,
+                                 double dt, Vector& force) {
+    const double length = network_.rotation_length;
+    for (std::size_t c = 0; c < tooling_.contacts.size(); ++c) {
+        const WallContact& contact = tooling_.contacts[c];
+        const Cylinder& cylinder = tooling_.cylinders[at(contact.cylinder)];
+        const std::size_t node = at(contact.node);
+        Vec3 place = network_.position[node] + displacement[node].head<3>();
+        if (friction_ == 0.0) place[0] = network_.position[node][0];  // a roller goes along with what it carries
+        const Vec3 towards(cylinder.x - place[0], 0.0, cylinder.z - (cylinder.punch ? travel : 0.0) - place[2]);
+        const double distance = towards.norm(), overlap = cylinder.radius + contact.radius - distance;
+        if (overlap <= 0.0) {
+            wall_stretch_[c].setZero();
+            continue;
+        }
+        const Vec3 normal = towards / distance, arm = contact.radius * normal;
+        const physics::HertzContact hertz = physics::hertz_contact(contact.modulus, contact.radius, overlap);
+        Vec3 on_sphere = -hertz.force * normal;
+        energy_ += hertz.energy;
+        ++touching_walls_;
+        if (friction_ > 0.0) {
+            const Vec3 wall_velocity(0.0, 0.0, cylinder.punch ? -punch_velocity : 0.0);
+            const Vec3 slide = dt * (wall_velocity - surface_velocity(velocity[node], arm, length));
+            on_sphere += held({normal, overlap, contact.radius, contact.modulus, contact.shear_modulus}, slide, wall_stretch_[c]);
+            force[node].tail<3>() += arm.cross(on_sphere) / length;
+        } else {
+            on_sphere[0] = 0.0;
+        }
+        force[node].head<3>() += on_sphere;
+        if (cylinder.punch) punch_force_ -= on_sphere[2];
+    }
+}
+
+void ExplicitContacts::add_forces(const Vector& displacement, const Vector& velocity, double travel, double punch_velocity,
+                                  double dt, Vector& force) {
+    if (++steps_since_check_ == steps_between_checks) {
+        steps_since_check_ = 0;
+        double farthest = 0.0;
+        for (std::size_t node = 0; node < displacement.size(); ++node) {
+            farthest = std::max(farthest, (displacement[node] - searched_at_[node]).head<3>().squaredNorm());
+        }
+        if (farthest > margin_ * margin_ / 16.0) search(displacement);
+    }
+    punch_force_ = energy_ = 0.0;
+    touching_walls_ = touching_pairs_ = 0;
+    add_pairs(displacement, velocity, dt, force);
+    add_walls(displacement, velocity, travel, punch_velocity, dt, force);
+}
+
+}  // namespace kiln::mechanics

@@ -1,0 +1,117 @@
+// dynamic_test.cpp: explicit motion against closed forms, and dynamic bending against the static method.
+#include "tools/bend/dynamic_test.h"
+
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include <cmath>
+
+#include "tests/physics/bonded_lattice.h"
+#include "tests/physics/relative.h"
+#include "tools/bend/report.h"
+#include "tools/bend/static_test.h"
+
+using namespace kiln;
+using namespace kiln::bend;
+using test::relative;
+
+namespace {
+
+const Watch no_stop = [](double) { return true; };
+
+Options dynamic_options() {
+    Options options;
+    options.method = Method::motion;
+    options.cycles = 1;
+    return options;
+}
+
+/// From a third to five sixths of the greatest force, unloading, N/m: the paper's window.
+double unloading_slope(const Result& result) {
+    const Point &high = result.curve[result.curve.size() - 7], &low = result.curve[result.curve.size() - 4];
+    return (high.force - low.force) / (high.deflection - low.deflection);
+}
+
+double static_slope(const State& state) {
+    Options options;
+    options.cycles = 1;
+    return unloading_slope(bend_static(state, options, no_stop));
+}
+
+}  // namespace
+
+TEST_CASE("two bonded spheres swing as leapfrog steps of omega^2 = 2 k_n/m must: sin(omega' dt/2) = omega dt/2, without decay") {
+    const State state = test::make_lattice({.cells = {2, 1, 1}, .periodic = false});
+    const mechanics::BondedBody body = mechanics::bonded_body(state, {});
+    const double mass = 3e-18, stretch = 1e-12, omega = std::sqrt(2.0 * body.network.stiffness.front().normal / mass);
+    mechanics::ExplicitMotion motion(body.network, mechanics::elastic_spheres(state, body), {mass, mass}, {}, {});
+    mechanics::Vector start(2, mechanics::Vec6::Zero());
+    start[1][0] = stretch;
+    motion.place(start, 0.0);
+    CHECK(motion.time_step() < 2.0 / omega);
+    CHECK(motion.time_step() > 0.2 / omega);
+    const double angle = 2.0 * std::asin(omega * motion.time_step() / 2.0);
+    // The first step finds the forces only, so that the turning point is halfway through it.
+    for (int step = 1; step <= 1000; ++step) {
+        motion.step(0.0);
+        if (step % 97 != 1) continue;
+        const double now = motion.displacement()[1][0] - motion.displacement()[0][0];
+        CHECK(std::abs(now / stretch - std::cos(angle * (step - 0.5)) / std::cos(angle / 2.0)) < 1e-8);
+    }
+}
+
+TEST_CASE("the dynamic slope comes to the static one as the punch slows down; work is stored or dissipated") {
+    const State state = test::make_lattice({.cells = {14, 3, 3}});
+    const double expected = static_slope(state);
+    Options options = dynamic_options();
+    const Result usual = bend_dynamic(state, options, no_stop);
+    CHECK(unloading_slope(usual) == relative(expected, 0.01));
+    CHECK(usual.energy_error < 1e-3);
+    CHECK(usual.dynamic.energy.damping > 0.0);
+    options.punch_velocity = 10.0 * usual.dynamic.velocity;
+    const double fast = unloading_slope(bend_dynamic(state, options, no_stop));
+    CHECK(std::abs(fast - expected) > 3.0 * std::abs(unloading_slope(usual) - expected));
+}
+
+TEST_CASE("mass scaled by 16: four times the time step and a quarter of the default velocity, the same curve to the last bit") {
+    const State state = test::make_rough_bar({12, 3, 3});
+    Options heavy = dynamic_options();
+    heavy.mass_scaling = 16.0;
+    const Result usual = bend_dynamic(state, dynamic_options(), no_stop), scaled = bend_dynamic(state, heavy, no_stop);
+    CHECK(scaled.dynamic.time_step == 4.0 * usual.dynamic.time_step);
+    CHECK(scaled.dynamic.velocity == 0.25 * usual.dynamic.velocity);
+    CHECK(scaled.dynamic.steps == usual.dynamic.steps);
+    CHECK(unloading_slope(scaled) == unloading_slope(usual));
+}
+
+TEST_CASE("friction at the cylinders stiffens the bar and takes energy, and the balance holds") {
+    const State state = test::make_lattice({.cells = {14, 3, 3}});
+    Options rough = dynamic_options();
+    rough.friction = 0.3;
+    const Result free = bend_dynamic(state, dynamic_options(), no_stop), held = bend_dynamic(state, rough, no_stop);
+    CHECK(held.dynamic.energy.friction > 0.0);
+    CHECK(free.dynamic.energy.friction == 0.0);
+    CHECK(held.energy_error < 0.01);
+    CHECK(unloading_slope(held) > unloading_slope(free));
+}
+
+TEST_CASE("dynamic bending: the same bytes for any number of threads") {
+    const int threads = omp_get_max_threads();
+    Options options = dynamic_options();
+    options.max_force = 2e-8;
+    options.punch_velocity = 5.0;
+    std::vector<std::string> documents;
+    for (const int count : {1, 2}) {
+        omp_set_num_threads(count);
+        documents.push_back(
+            document(bend_dynamic(test::make_rough_bar({12, 4, 4}), options, no_stop), options, Json::array()).dump());
+    }
+    omp_set_num_threads(threads);
+    CHECK(documents[0] == documents[1]);
+}
+
+TEST_CASE("dynamic bending needs a density") {
+    State state = test::make_lattice({.cells = {14, 3, 3}});
+    state.materials.front().density.reset();
+    CHECK_THROWS_WITH_AS(bend_dynamic(state, dynamic_options(), no_stop), "material 'alumina' has no density", Error);
+}
