@@ -149,24 +149,20 @@ TEST_CASE("the same bytes for any number of threads, states included") {
     CHECK(documents[0] == documents[1]);
 }
 
-TEST_CASE("gaps that close under load are counted: neighbours without a bond, a little apart, under the punch") {
-    State state = test::make_lattice({.cells = {30, 3, 4}});
-    for (double& radius : state.particles.radius) radius = 0.5e-7 * (1.0 - 1e-5);
-    // Upright bonds in the middle slice go; the slices beside it carry on.
-    std::vector<std::int32_t> kept;
-    for (std::size_t bond = 0; bond < state.bonds->size(); ++bond) {
-        const auto [i, j] = state.bonds->pair[bond];
-        if (i / 12 != 15 || std::abs(i - j) != 1) kept.push_back(static_cast<std::int32_t>(bond));
-    }
-    const std::size_t removed = state.bonds->size() - kept.size();
-    state.bonds = take_rows(*state.bonds, kept);
+TEST_CASE("gaps that close under load press the particles together: neighbours without a bond, a little apart, under the punch") {
+    std::size_t removed = 0;
+    const State open = test::make_cracked_bar(30, 1e-5, removed), wide = test::make_cracked_bar(30, 0.05, removed);
     Options gentle, hard;
     gentle.max_deflection = 1e-13;
     hard.max_deflection = 1e-8;
-    CHECK(tested(state, gentle).closed_gaps == 0);
-    const std::size_t closed = tested(state, hard).closed_gaps;
-    CHECK(closed > 0);
-    CHECK(closed <= removed);
+    CHECK(tested(open, gentle).closed_gaps == 0);
+    const Result touching = tested(open, hard), apart = tested(wide, hard);
+    CHECK(touching.closed_gaps > 0);
+    CHECK(touching.closed_gaps <= removed);
+    CHECK(touching.converged);
+    CHECK(touching.energy_error < 0.02);
+    CHECK(apart.closed_gaps == 0);
+    CHECK(peak_of(touching).force > peak_of(apart).force);
 }
 
 TEST_CASE("compression above, tension below") {

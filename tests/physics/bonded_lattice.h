@@ -80,4 +80,18 @@ inline State make_rough_bar(std::array<int, 3> cells, double edge = 1e-7) {
     return make_lattice({.cells = cells, .edge = edge, .neighbour = 1.25, .jitter = 0.2, .random_radii = true});
 }
 
+/// A bar of 3 x 4 particles across without upright bonds in its middle slice, where particles stand `gap` diameters apart.
+inline State make_cracked_bar(int length, double gap, std::size_t& removed) {
+    State state = make_lattice({.cells = {length, 3, 4}});
+    for (double& radius : state.particles.radius) radius = 0.5e-7 * (1.0 - gap);
+    std::vector<std::int32_t> kept;
+    for (std::size_t bond = 0; bond < state.bonds->size(); ++bond) {
+        const auto [i, j] = state.bonds->pair[bond];
+        if (i / 12 != length / 2 || std::abs(i - j) != 1) kept.push_back(static_cast<std::int32_t>(bond));
+    }
+    removed = state.bonds->size() - kept.size();
+    state.bonds = take_rows(*state.bonds, kept);
+    return state;
+}
+
 }  // namespace kiln::test

@@ -110,6 +110,17 @@ TEST_CASE("dynamic bending: the same bytes for any number of threads") {
     CHECK(documents[0] == documents[1]);
 }
 
+TEST_CASE("gaps that close are the same contacts in both methods") {
+    std::size_t removed = 0;
+    const State state = test::make_cracked_bar(12, 1e-6, removed);
+    Options options;
+    options.cycles = 1;
+    const Result still = bend_static(state, options, no_stop), moving = bend_dynamic(state, dynamic_options(), no_stop);
+    CHECK(still.closed_gaps > 0);
+    CHECK(moving.closed_gaps == still.closed_gaps);
+    CHECK(unloading_slope(moving) == relative(unloading_slope(still), 0.01));
+}
+
 TEST_CASE("dynamic bending needs a density") {
     State state = test::make_lattice({.cells = {14, 3, 3}});
     state.materials.front().density.reset();

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mechanics/wall_contact.h"
+#include "mechanics/contact_problem.h"
 #include "tools/bend/options.h"
 #include "tools/bend/specimen.h"
 

@@ -19,10 +19,10 @@ constexpr const char* description =
     "all cycles.";
 
 constexpr const char* footer =
-    "Static: bonds are springs, particles touch the cylinders by Hertz's law and part from them freely; there is no friction.\n"
-    "Dynamic: the same by leapfrog steps, with Hertz-Mindlin contacts between particles without a bond as well. Of the work of "
-    "the\n"
-    "punch it says what was stored and what was dissipated.\n"
+    "Static: bonds are springs; particles touch the cylinders, and each other where a gap between them closes, by Hertz's law, and part\n"
+    "freely; there is no friction.\n"
+    "Dynamic: the same by leapfrog steps, with Mindlin's friction if wanted. Of the work of the punch it says what was stored and what\n"
+    "was dissipated.\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
     "  bend --span 8um --punch-radius 2um --max-force 60uN --states bent.kiln bonded.kiln -o bend.json\n"

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "core/neighbours.h"
 #include "physics/materials.h"
 
 namespace kiln::bend {
@@ -83,25 +81,6 @@ Specimen cut_specimen(State state, const mechanics::BondModel& model) {
     specimen.poisson_ratio = physics::required(material.poisson_ratio, material, "poisson_ratio");
     specimen.state = std::move(state);
     return specimen;
-}
-
-std::size_t closed_gaps(const Specimen& specimen, const mechanics::Vector& displacement) {
-    const mechanics::BondedBody& body = specimen.body;
-    std::vector<Vec3> bent;
-    std::vector<double> radius;
-    for (std::size_t node = 0; node < body.particle.size(); ++node) {
-        bent.emplace_back(body.network.position[node] + displacement[node].head<3>());
-        radius.push_back(specimen.state.particles.radius[static_cast<std::size_t>(body.particle[node])]);
-    }
-    std::set<std::array<std::int32_t, 2>> bonded;
-    for (const auto& [i, j] : body.network.pair) bonded.insert({std::min(i, j), std::max(i, j)});
-    std::size_t closed = 0;
-    for (const Pair& pair : find_pairs(specimen.state.box, bent, radius)) {
-        const double distance = pair_vector(specimen.state.box, body.network.position, pair).norm();
-        const double touching = radius[static_cast<std::size_t>(pair.i)] + radius[static_cast<std::size_t>(pair.j)];
-        if (distance > touching && !bonded.contains({pair.i, pair.j})) ++closed;
-    }
-    return closed;
 }
 
 }  // namespace kiln::bend

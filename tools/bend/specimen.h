@@ -21,10 +21,6 @@ struct Specimen {
 /// Returns the number of those.
 std::size_t cut_open(State& state);
 
-/// Pairs of particles without a bond that are apart at rest and overlap under the displacements of the body's nodes (m): contacts
-/// between particles that the test leaves out.
-std::size_t closed_gaps(const Specimen& specimen, const mechanics::Vector& displacement);
-
 /// Throws Error for a state that cannot be made a bar: see mechanics::bonded_body.
 Specimen cut_specimen(State state, const mechanics::BondModel& model);
 
