@@ -52,27 +52,6 @@ BondTensor tensor_of(const BondNetwork& network, std::size_t bond) {
     return {k.normal * along + k.shear * across, k.torsion * along + k.bending * across};
 }
 
-/// Blocks of one bond for its nodes i and j. With the relative displacement u_j - u_i + S (q_i + q_j) at the bond's middle,
-/// S q = d x q/2 per rotation length, and the relative rotation q_j - q_i.
-struct BondBlocks {
-    Mat6 ii, ij, jj;
-};
-
-BondBlocks blocks_of(const BondNetwork& network, std::size_t bond) {
-    const BondTensor k = tensor_of(network, bond);
-    const double length = network.rotation_length;
-    const Mat3 S = cross_matrix(network.vector[bond]) / (2.0 * length);
-    const Mat3& C = k.displacement;
-    const Mat3 CS = C * S;
-    const Mat3 SCS = S.transpose() * CS;
-    const Mat3 rotation = k.rotation / (length * length);
-    BondBlocks blocks;
-    blocks.ii << C, -CS, -CS.transpose(), SCS + rotation;
-    blocks.jj << C, CS, CS.transpose(), SCS + rotation;
-    blocks.ij << -C, -CS, CS.transpose(), SCS - rotation;
-    return blocks;
-}
-
 /// Bonds thick enough to carry anything.
 std::vector<std::int32_t> carrying_bonds(const State& state) {
     std::vector<std::int32_t> rows;
@@ -166,6 +145,21 @@ Vec3 between(const BondNetwork& network, std::int32_t i, std::int32_t j) {
     return vector;
 }
 
+BondBlocks bond_blocks(const BondNetwork& network, std::size_t bond) {
+    const BondTensor k = tensor_of(network, bond);
+    const double length = network.rotation_length;
+    const Mat3 S = cross_matrix(network.vector[bond]) / (2.0 * length);
+    const Mat3& C = k.displacement;
+    const Mat3 CS = C * S;
+    const Mat3 SCS = S.transpose() * CS;
+    const Mat3 rotation = k.rotation / (length * length);
+    BondBlocks blocks;
+    blocks.ii << C, -CS, -CS.transpose(), SCS + rotation;
+    blocks.jj << C, CS, CS.transpose(), SCS + rotation;
+    blocks.ij << -C, -CS, CS.transpose(), SCS - rotation;
+    return blocks;
+}
+
 BlockMatrix stiffness_matrix(const BondNetwork& network) {
     const Incidence incidence = find_incidence(network.nodes(), network.pair);
     const auto other_end = [&](std::size_t bond, std::int32_t node) {
@@ -194,7 +188,7 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
         for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
             const auto bond = at(incidence.bond[at(k)]);
             const auto [i, j] = network.pair[bond];
-            const BondBlocks blocks = blocks_of(network, bond);
+            const BondBlocks blocks = bond_blocks(network, bond);
             if (i == j) {
                 block_at(node) += blocks.ii + blocks.jj + blocks.ij + blocks.ij.transpose();
             } else if (node == i) {

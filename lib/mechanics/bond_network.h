@@ -16,7 +16,7 @@ struct BondNetwork {
     std::vector<Vec3> position;  // m
     Vec3 period = Vec3::Zero();  // m, box length along a periodic axis, else 0
     std::vector<std::array<std::int32_t, 2>> pair;
-    std::vector<Vec3> vector;  // m, from the first node to the second (or its image)
+    std::vector<Vec3> vector;    // m, from the first node to the second (or its image)
     std::vector<double> radius;  // m, of the bond, at most that of its smaller sphere
     std::vector<physics::BondStiffness> stiffness;
     double rotation_length = 1.0;  // m
@@ -51,6 +51,14 @@ BondedBody bonded_body(const State& state, const BondModel& model);
 
 /// Node j relative to node i, m; the nearest image along periodic axes.
 Vec3 between(const BondNetwork& network, std::int32_t i, std::int32_t j);
+
+/// Blocks of one bond for its nodes i and j, N/m. With the relative displacement u_j - u_i + S (q_i + q_j) at the bond's middle,
+/// S q = d x q/2 per rotation length, and the relative rotation q_j - q_i.
+struct BondBlocks {
+    Mat6 ii, ij, jj;
+};
+
+BondBlocks bond_blocks(const BondNetwork& network, std::size_t bond);
 
 /// Symmetric matrix, N/m, positive semidefinite: zero energy for rigid motions of a free network and for translations of a periodic
 /// one.

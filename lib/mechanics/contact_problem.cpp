@@ -13,7 +13,6 @@ namespace {
 
 constexpr double response_tolerance = 0.02;  // of one linear solve; the next one takes up what it leaves
 constexpr std::size_t most_fields = 120;
-constexpr std::size_t rigid_motions = 3;  // lift, roll and pitch, the first fields; the other ones meet no contact
 constexpr int most_newton_steps = 500;
 constexpr double newton_tolerance = 1e-13;  // unbalanced force in the space over the punch force
 constexpr double second_pass = 0.1;         // share of a field's energy below which rounding calls for another orthogonalisation
@@ -57,6 +56,13 @@ double ContactProblem::closing(const Contact& contact, const Vector& displacemen
     Vec3 moved = displacement[at(contact.node)].head<3>();
     if (contact.other >= 0) moved -= displacement[at(contact.other)].head<3>();
     return -contact.push.dot(moved);
+}
+
+/// How far a displacement closes or opens the contact that it moves most, m.
+double ContactProblem::largest_closing(const Vector& displacement) const {
+    double largest = 0.0;
+    for (const Contact& contact : contacts_) largest = std::max(largest, std::abs(closing(contact, displacement)));
+    return largest;
 }
 
 void ContactProblem::add_contact(const Contact& contact) {
@@ -203,8 +209,7 @@ void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
         }
         rest = all - loads.dot(shares);
     }
-    double largest = 0.0;
-    for (const Contact& contact : contacts_) largest = std::max(largest, std::abs(closing(contact, field.displacement)));
+    const double largest = largest_closing(field.displacement);
     if (!(largest > 0.0)) return;
     for (Vec6& each : field.displacement) each /= largest;
     solver_->forces(field.displacement, field.force);

@@ -28,7 +28,7 @@ struct Equilibrium {
 /// elastic response to the forces that the last minimum left unbalanced. The bonds' matrix is preconditioned once; a minimum in the
 /// space is a small dense problem; the space serves all forces. Contacts between particles enter where their gap has closed.
 class ContactProblem {
- public:
+   public:
     /// solver: null for a body that is only seated. pairs: all that may come to touch. The network must outlive the problem.
     ContactProblem(const BondNetwork& network, ElasticSolver* solver, const std::vector<WallContact>& walls,
                    std::vector<PairContact> pairs = {});
@@ -42,7 +42,13 @@ class ContactProblem {
     /// Equilibrium under a punch force > 0, N, until `residual` is at most `tolerance` or the space is full.
     Equilibrium solve(double force, double tolerance);
 
- private:
+    /// Leaves this share of a bond's stiffness, which the network still has whole, to the body; its ends may press each other from
+    /// now on. The network is left to the caller.
+    void soften(std::size_t bond, double share, const PairContact& ends);
+
+   private:
+    static constexpr std::size_t rigid_motions = 3;  // lift, roll and pitch, the first fields; the other ones meet no contact
+
     struct Field {
         Vector displacement, force;  // force: stiffness times displacement; empty for a rigid motion
     };
@@ -59,9 +65,11 @@ class ContactProblem {
     };
 
     double closing(const Contact& contact, const Vector& displacement) const;
+    double largest_closing(const Vector& displacement) const;
     void add_contact(const Contact& contact);
     bool add_closed_pairs(const Vector& displacement);
     void add_field(Field field);
+    void start_anew();
     void add_response(const Vector& unbalanced, int& iterations);
     Forces forces_at(const Eigen::VectorXd& amplitude) const;
     Eigen::MatrixXd curvature(const Forces& forces) const;

@@ -1,6 +1,8 @@
 // elastic_solver.cpp: grounding, preconditioning and solving of a bond network.
 #include "mechanics/elastic_solver.h"
 
+#include <algorithm>
+
 namespace kiln::mechanics {
 
 namespace {
@@ -44,6 +46,20 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground)
 SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
     return conjugate_gradient(
         matrix_, [this](const Vector& r, Vector& z) { preconditioner_->apply(r, z); }, load, x, tolerance, max_iterations);
+}
+
+void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double share) {
+    const auto [i, j] = network.pair[bond];
+    const BondBlocks blocks = bond_blocks(network, bond);
+    const auto block_at = [&](std::int32_t row, std::int32_t column) -> Mat6& {
+        const auto begin = matrix_.column.begin() + matrix_.first(row), end = matrix_.column.begin() + matrix_.last(row);
+        return matrix_.block[static_cast<std::size_t>(std::lower_bound(begin, end, column) - matrix_.column.begin())];
+    };
+    const double lost = 1.0 - share;
+    block_at(i, i) -= lost * blocks.ii;
+    block_at(j, j) -= lost * blocks.jj;
+    block_at(i, j) -= lost * blocks.ij;
+    block_at(j, i) -= lost * blocks.ij.transpose();
 }
 
 void ElasticSolver::forces(const Vector& displacement, Vector& force) const {

@@ -26,6 +26,10 @@ class ElasticSolver {
     /// Forces that hold the network in a displacement field: the stiffness matrix without the ground, times the displacement.
     void forces(const Vector& displacement, Vector& force) const;
 
+    /// Takes from the matrix what a bond of the network gave to it, but for this share. The preconditioner stays: it still is one
+    /// for the softer body.
+    void soften(const BondNetwork& network, std::size_t bond, double share);
+
     const Multigrid& preconditioner() const { return *preconditioner_; }
 
    private:

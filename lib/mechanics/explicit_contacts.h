@@ -11,7 +11,7 @@ namespace kiln::mechanics {
 /// exceed the friction coefficient times the normal force. Without friction the cylinders are rollers that follow the body along x:
 /// only the vertical part of their forces acts.
 class ExplicitContacts {
- public:
+   public:
     /// The network must outlive the contacts.
     ExplicitContacts(const BondNetwork& network, std::vector<ElasticSphere> spheres, Tooling tooling, double friction);
 
@@ -28,7 +28,7 @@ class ExplicitContacts {
     /// Pairs that may touch, as of now.
     const std::vector<PairContact>& pairs() const { return pairs_; }
 
- private:
+   private:
     struct Touch {
         Vec3 normal;     // from the sphere outwards
         double overlap;  // m

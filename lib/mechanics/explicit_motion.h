@@ -29,7 +29,7 @@ struct MotionEnergy {
 /// Leapfrog: velocities half a step behind displacements. Bonds by physics/bond_motion.h, contacts by ExplicitContacts. Every sum
 /// has its order, so the number of threads does not change a bit.
 class ExplicitMotion {
- public:
+   public:
     /// A network without periodic axes that outlives the motion; mass of every node, kg, of spheres with the moment of inertia
     /// (2/5) m r^2.
     ExplicitMotion(const BondNetwork& network, std::vector<ElasticSphere> spheres, const std::vector<double>& mass, Tooling tooling,
@@ -51,7 +51,7 @@ class ExplicitMotion {
     MotionEnergy energy() const;
     std::vector<BondLoad> loads() const;
 
- private:
+   private:
     void choose_time_step(const std::vector<WallContact>& walls, double greatest_force);
     void kick_and_drift();
     void move_bonds();

@@ -21,6 +21,18 @@ std::vector<std::array<std::int32_t, 2>> sorted_bonds(const BondNetwork& network
     return bonded;
 }
 
+}  // namespace
+
+std::vector<ElasticSphere> elastic_spheres(const State& state, const BondedBody& body) {
+    std::vector<ElasticSphere> spheres;
+    for (const std::int32_t row : body.particle) {
+        const Material& material = state.materials[at(state.particles.material[at(row)])];
+        spheres.push_back({state.particles.radius[at(row)], physics::required(material.young_modulus, material, "young_modulus"),
+                           physics::required(material.poisson_ratio, material, "poisson_ratio")});
+    }
+    return spheres;
+}
+
 PairContact contact_between(const BondNetwork& network, const std::vector<ElasticSphere>& spheres, std::int32_t i, std::int32_t j) {
     const ElasticSphere &a = spheres[at(i)], &b = spheres[at(j)];
     const Vec3 vector = between(network, i, j);
@@ -33,18 +45,6 @@ PairContact contact_between(const BondNetwork& network, const std::vector<Elasti
             in_contact(contact_modulus(a.young_modulus, a.poisson_ratio), contact_modulus(b.young_modulus, b.poisson_ratio)),
             in_contact(contact_shear_modulus(a.young_modulus, a.poisson_ratio),
                        contact_shear_modulus(b.young_modulus, b.poisson_ratio))};
-}
-
-}  // namespace
-
-std::vector<ElasticSphere> elastic_spheres(const State& state, const BondedBody& body) {
-    std::vector<ElasticSphere> spheres;
-    for (const std::int32_t row : body.particle) {
-        const Material& material = state.materials[at(state.particles.material[at(row)])];
-        spheres.push_back({state.particles.radius[at(row)], physics::required(material.young_modulus, material, "young_modulus"),
-                           physics::required(material.poisson_ratio, material, "poisson_ratio")});
-    }
-    return spheres;
 }
 
 std::vector<PairContact> near_pairs(const BondNetwork& network, const std::vector<ElasticSphere>& spheres,

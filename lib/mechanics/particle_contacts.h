@@ -27,6 +27,9 @@ struct PairContact {
     double shear_modulus;  // Pa, the same for Mindlin's stiffness
 };
 
+/// The contact of two nodes, whether they are near each other or not.
+PairContact contact_between(const BondNetwork& network, const std::vector<ElasticSphere>& spheres, std::int32_t i, std::int32_t j);
+
 /// Pairs without a bond whose gap, under the displacements of the nodes, is less than the margin (m). Sorted by i, then j.
 std::vector<PairContact> near_pairs(const BondNetwork& network, const std::vector<ElasticSphere>& spheres,
                                     const Vector& displacement, double margin);

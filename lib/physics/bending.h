@@ -18,4 +18,10 @@ inline double bending_modulus(double slope, double span, double width, double he
     return slope * span * span * span / (4.0 * width * height * height * height) * shear_correction(height, span, poisson_ratio);
 }
 
+/// Bending strength, Pa: the stress that the greatest force F (N) would cause at the lower face of an elastic bar, 3 F L/(2 b h^2)
+/// (ASTM C1161-18, Eq. 5 for three points); span L, width b, height h in m.
+inline double bending_strength(double force, double span, double width, double height) {
+    return 1.5 * force * span / (width * height * height);
+}
+
 }  // namespace kiln::physics

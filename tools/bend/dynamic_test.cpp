@@ -59,7 +59,7 @@ mechanics::Vector exact_rotation(const mechanics::BondNetwork& network, const me
 
 /// The test from the first touch on.
 class Strokes {
- public:
+   public:
     Strokes(Result& result, const Options& options, const Watch& watch)
         : result_(result),
           options_(options),
@@ -79,7 +79,7 @@ class Strokes {
         return true;
     }
 
- private:
+   private:
     mechanics::ExplicitMotion make_motion();
     bool advance(double heading, double share);
     bool load();

@@ -18,7 +18,8 @@ constexpr double default_span = 0.8;         // of the length
 constexpr double default_deflection = 1e-3;  // of the height
 constexpr double default_radius = 0.75;      // of the height, as in ASTM C1161
 constexpr double steepest_cosine = 0.5;      // of a contact normal against z
-constexpr double reach = 0.1;  // of the height: particles that far behind the foremost one, and two radii more, may come to touch
+constexpr double contact_depth =
+    0.1;  // of the height: particles that far behind the foremost one, and two radii more, may come to touch
 
 struct Sphere {
     std::int32_t node;
@@ -61,7 +62,7 @@ void add_cylinder(mechanics::Tooling& tooling, const std::vector<Sphere>& sphere
     tooling.cylinders.push_back({x, side * foremost, cylinder_radius, side > 0.0});
     for (const auto& [sphere, height, cosine] : candidates) {
         const double gap = foremost - height;
-        if (gap > reach * specimen.size[2] + 2.0 * largest) continue;
+        if (gap > contact_depth * specimen.size[2] + 2.0 * largest) continue;
         const Material& material = specimen.state.materials[static_cast<std::size_t>(sphere->material)];
         const double young = physics::required(material.young_modulus, material, "young_modulus");
         const double poisson = physics::required(material.poisson_ratio, material, "poisson_ratio");
@@ -83,7 +84,24 @@ std::vector<double> fit_weights(const std::vector<Vec3>& positions, double x, do
     return {weights.begin(), weights.end()};
 }
 
+/// Lowest and highest x that spheres of the state reach, m.
+std::pair<double, double> reach(const Specimen& specimen, std::span<const std::int32_t> rows) {
+    const Particles& particles = specimen.state.particles;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const std::int32_t row : rows) {
+        const auto particle = static_cast<std::size_t>(row);
+        low = std::min(low, particles.position[particle][0] - particles.radius[particle]);
+        high = std::max(high, particles.position[particle][0] + particles.radius[particle]);
+    }
+    return {low, high};
+}
+
 }  // namespace
+
+bool reaches_supports(const Specimen& specimen, const Fixture& fixture, std::span<const std::int32_t> rows) {
+    const auto [low, high] = reach(specimen, rows);
+    return low <= fixture.middle - fixture.span / 2.0 && high >= fixture.middle + fixture.span / 2.0;
+}
 
 Fixture place_fixture(const Specimen& specimen, const Options& options) {
     Fixture fixture;
@@ -97,15 +115,10 @@ Fixture place_fixture(const Specimen& specimen, const Options& options) {
         words << "the span of " << fixture.span << " m is not shorter than the bar of " << length << " m";
         throw Error(words.str());
     }
-    const mechanics::BondedBody& body = specimen.body;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (std::size_t node = 0; node < body.particle.size(); ++node) {
-        const double radius = specimen.state.particles.radius[static_cast<std::size_t>(body.particle[node])];
-        low = std::min(low, body.network.position[node][0] - radius);
-        high = std::max(high, body.network.position[node][0] + radius);
-    }
-    const double left = fixture.middle - fixture.span / 2.0, right = fixture.middle + fixture.span / 2.0;
-    if (low > left || high < right) {
+    const auto [low, high] = reach(specimen, specimen.body.particle);
+    if (!reaches_supports(specimen, fixture, specimen.body.particle)) {
+        const double left = fixture.middle - fixture.span / 2.0, right = fixture.middle + fixture.span / 2.0;
+        const mechanics::BondedBody& body = specimen.body;
         words << (body.fragments > 0 ? "the bar is in pieces: the largest, " : "the bar does not reach its supports: it has ")
               << body.particle.size() << " of " << specimen.state.particles.size() << " particles, reaches from x = " << low
               << " to " << high << " m, and the supports are at " << left << " and " << right << " m";

@@ -1,6 +1,7 @@
 // fixture.h: the three cylinders of the test, what they can touch, and how the deflection is read.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "mechanics/contact_problem.h"
@@ -20,6 +21,9 @@ struct Fixture {
 /// piece does not reach from support to support.
 Fixture place_fixture(const Specimen& specimen, const Options& options);
 
+/// True if particles (rows of the state) reach from support to support.
+bool reaches_supports(const Specimen& specimen, const Fixture& fixture, std::span<const std::int32_t> rows);
+
 /// Deflection at which unloading begins, m: the option's, or its default.
 double greatest_deflection(const Specimen& specimen, const Options& options);
 
@@ -32,11 +36,11 @@ mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixtur
 /// Reads a deflection from the displacements of nodes, m: the lower face under the load, downwards, against the mean of the
 /// cross-sections above the two supports. Local dents of the contacts hardly enter, rigid motions not at all.
 class Gauge {
- public:
+   public:
     Gauge(const Specimen& specimen, const Fixture& fixture);
     double read(const mechanics::Vector& displacement) const;
 
- private:
+   private:
     struct Weight {
         std::int32_t node;
         double weight;

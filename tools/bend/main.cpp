@@ -7,6 +7,7 @@
 #include "tools/bend/dynamic_test.h"
 #include "tools/bend/report.h"
 #include "tools/bend/static_test.h"
+#include "tools/bend/strength_test.h"
 
 namespace {
 
@@ -34,7 +35,9 @@ int run(int argc, char** argv) {
             progress.show(done, name);
             return !cli::stop_requested();
         };
-        const auto test = options.method == bend::Method::motion ? bend::bend_dynamic : bend::bend_static;
+        const auto test = options.to_failure()                     ? bend::bend_to_failure
+                          : options.method == bend::Method::motion ? bend::bend_dynamic
+                                                                   : bend::bend_static;
         const bend::Result result = test(std::move(*state), options, watch);
         if (cli::stop_requested()) return cli::interrupted;
         progress.clear();

@@ -19,9 +19,11 @@ constexpr const char* description =
     "all cycles.";
 
 constexpr const char* footer =
-    "Static: bonds are springs; particles touch the cylinders, and each other where a gap between them closes, by Hertz's law, and part\n"
+    "Static: bonds are springs; particles touch the cylinders, and each other where a gap between them closes, by Hertz's law, and "
+    "part\n"
     "freely; there is no friction.\n"
-    "Dynamic: the same by leapfrog steps, with Mindlin's friction if wanted. Of the work of the punch it says what was stored and what\n"
+    "Dynamic: the same by leapfrog steps, with Mindlin's friction if wanted. Of the work of the punch it says what was stored and "
+    "what\n"
     "was dissipated.\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
@@ -55,19 +57,43 @@ void Options::add_to(CLI::App& app) {
     app.add_option("--states", states, "also write the bar bent by the greatest force, with the forces in its bonds, to this file")
         ->type_name("FILE");
     add_dynamic(app);
-    app.callback([this, &app] {
-        const std::pair<const char*, double> quantities[] = {{"--span", span},
-                                                             {"--punch-radius", punch_radius},
-                                                             {"--max-deflection", max_deflection},
-                                                             {"--max-force", max_force},
-                                                             {"--punch-velocity", punch_velocity}};
-        for (const auto& [name, value] : quantities) {
-            if (app.count(name) > 0 && !(value > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
-        }
-        for (const char* name : {"--punch-velocity", "--damping", "--mass-scaling", "--friction"}) {
-            if (app.count(name) > 0 && method != Method::motion) throw CLI::ValidationError(name, "needs --method dynamic");
-        }
-    });
+    add_strength(app);
+    app.callback([this, &app] { check(app); });
+}
+
+void Options::check(const CLI::App& app) const {
+    const std::pair<const char*, double> quantities[] = {{"--span", span},
+                                                         {"--punch-radius", punch_radius},
+                                                         {"--max-deflection", max_deflection},
+                                                         {"--max-force", max_force},
+                                                         {"--punch-velocity", punch_velocity},
+                                                         {"--tensile-strength", tensile_strength},
+                                                         {"--shear-strength", shear_strength}};
+    for (const auto& [name, value] : quantities) {
+        if (app.count(name) > 0 && !(value > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
+    }
+    for (const char* name : {"--punch-velocity", "--damping", "--mass-scaling", "--friction"}) {
+        if (app.count(name) > 0 && method != Method::motion) throw CLI::ValidationError(name, "needs --method dynamic");
+    }
+    if (app.count("--until") > 0 && !to_failure()) {
+        throw CLI::ValidationError("--until", "needs --tensile-strength or --shear-strength");
+    }
+    if (!to_failure()) return;
+    if (method != Method::equilibria) throw CLI::ValidationError("--method", "must be static for bonds to break");
+    for (const char* name : {"--max-deflection", "--max-force", "--cycles", "--points"}) {
+        if (app.count(name) > 0) throw CLI::ValidationError(name, "has no meaning in a test to failure");
+    }
+}
+
+void Options::add_strength(CLI::App& app) {
+    cli::add_quantity(app, "--tensile-strength", tensile_strength, cli::Dimension::pressure,
+                      "bonds break where tension and bending together reach this stress; the bar is loaded until it fails", "none");
+    cli::add_quantity(app, "--shear-strength", shear_strength, cli::Dimension::pressure, "the same for shear and torsion together",
+                      "none");
+    app.add_option("--until", until,
+                   "the test to failure ends where the force has fallen to this share of its greatest (plain number)")
+        ->check(CLI::Range(0.01, 0.999))
+        ->capture_default_str();
 }
 
 void Options::add_dynamic(CLI::App& app) {

@@ -30,12 +30,19 @@ struct Options {
     double damping = 0.7;
     double friction = 0.0;
     double mass_scaling = 1.0;
-    std::string states;  // file of the deformed states; empty for none
+    double tensile_strength = 0.0;  // Pa, of bonds; zero: they do not break so
+    double shear_strength = 0.0;    // Pa
+    double until = 0.1;             // of the greatest force: where a test to failure ends
+    std::string states;             // file of the deformed states; empty for none
 
     void add_to(CLI::App& app);
 
- private:
+    bool to_failure() const { return tensile_strength > 0.0 || shear_strength > 0.0; }
+
+   private:
     void add_dynamic(CLI::App& app);
+    void add_strength(CLI::App& app);
+    void check(const CLI::App& app) const;
 };
 
 }  // namespace kiln::bend

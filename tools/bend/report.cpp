@@ -2,6 +2,7 @@
 #include "tools/bend/report.h"
 
 #include "io/state_io.h"
+#include "physics/bending.h"
 
 namespace kiln::bend {
 
@@ -31,6 +32,20 @@ void add_motion(Json& json, const DynamicRun& run, const Options& options) {
     json["damping"] = options.damping;
     json["friction"] = options.friction;
     json["mass_scaling"] = options.mass_scaling;
+}
+
+void add_failure(Json& json, const Result& result, const Options& options) {
+    const Vec3& size = result.specimen.size;
+    const auto strength = [&](double force) { return physics::bending_strength(force, result.fixture.span, size[1], size[2]); };
+    json["strength"] = {{"bending_strength", strength(result.peak_force)},
+                        {"peak_force", result.peak_force},
+                        {"first_break", strength(result.curve[1].force)},
+                        {"breaks", result.breaks},
+                        {"tensile_strength", options.tensile_strength > 0.0 ? Json(options.tensile_strength) : Json()},
+                        {"shear_strength", options.shear_strength > 0.0 ? Json(options.shear_strength) : Json()},
+                        {"until", options.until}};
+    json["energy"].erase("error");
+    json["energy"].update(Json{{"work", result.failure_work}, {"dissipated", result.failure_work - result.failure_stored}});
 }
 
 }  // namespace
@@ -73,6 +88,7 @@ Json document(const Result& result, const Options& options, Json history) {
     }
     json["curve"] = {{"deflection", deflection}, {"punch", punch}, {"force", force}};
     json["energy"] = {{"bonds", result.peak.bond_energy}, {"contacts", result.peak.contact_energy}, {"error", result.energy_error}};
+    if (options.to_failure()) add_failure(json, result, options);
     if (options.method == Method::motion) {
         add_motion(json, result.dynamic, options);
     } else {
@@ -115,6 +131,7 @@ State bent_state(const Result& result, Json history) {
     put(state.bonds->other, vectors("moment", moment));
     put(state.bonds->other, {"tensile_stress", {{tensile.size()}, std::move(tensile)}});
     put(state.bonds->other, {"shear_stress", {{shear.size()}, std::move(shear)}});
+    if (!result.broken.empty()) put(state.bonds->other, {"broken", {{result.broken.size()}, result.broken}});
     state.history = std::move(history);
     return state;
 }

@@ -27,17 +27,20 @@ struct Result {
     Specimen specimen;
     Fixture fixture;
     std::vector<Point> curve;                // all cycles
-    mechanics::Equilibrium peak;             // under the greatest force
+    mechanics::Equilibrium peak;             // under the greatest force; of a test to failure, at its end
     std::vector<mechanics::BondLoad> loads;  // of the bonds there
     double peak_force = 0.0;                 // N
     std::size_t contacts = 0;                // that carry force there
     std::size_t closed_gaps = 0;             // pairs without a bond that come to touch there
     int iterations = 0;                      // of the linear solver, in all
     double residual = 0.0;                   // greatest of all equilibria
-    double energy_error =
-        0.0;  // relative: work of the punch to the peak against the energy stored; at all points against all energy (dynamic)
+    double energy_error = 0.0;  // relative: work of the punch to the peak against the energy stored; dynamic: against all energy
     bool converged = true;
-    DynamicRun dynamic;  // of the dynamic method
+    DynamicRun dynamic;                // of the dynamic method
+    std::size_t breaks = 0;            // of bonds, in a test to failure
+    std::vector<std::int32_t> broken;  // for each bond its place in the order of breaks, from 1; 0 for a whole one
+    double failure_work = 0.0;         // J, of the punch in a test to failure
+    double failure_stored = 0.0;       // J, at its end
 };
 
 /// Called between equilibria with the share of the work done; false stops the test.

@@ -5,78 +5,24 @@
 #include <cmath>
 #include <utility>
 
+#include "tools/bend/equilibria.h"
+
 namespace kiln::bend {
 
 namespace {
 
-constexpr double seating_force = 1e-9;  // of the greatest force: where the punch's travel is zero
 constexpr double deflection_tolerance = 1e-6;
-constexpr double trial_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
 constexpr int most_trials = 12;
-constexpr double watched_gap = 0.2;  // of the mean radius: wider gaps do not close under small deflections
-
-struct Level {
-    Point point;
-    double compliance, energy;  // m/N, J
-};
-
-/// Pairs without a bond so near that they may come to touch in the test.
-std::vector<mechanics::PairContact> pairs_that_may_touch(const Specimen& specimen) {
-    const mechanics::BondNetwork& network = specimen.body.network;
-    return mechanics::near_pairs(network, mechanics::elastic_spheres(specimen.state, specimen.body),
-                                 mechanics::Vector(network.nodes(), mechanics::Vec6::Zero()),
-                                 watched_gap * network.rotation_length);
-}
-
-/// The equilibria of one test.
-class Levels {
- public:
-    Levels(const Specimen& specimen, const Fixture& fixture, double tolerance)
-        : solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
-          problem_(specimen.body.network, &solver_, find_contacts(specimen, fixture).contacts, pairs_that_may_touch(specimen)),
-          gauge_(specimen, fixture),
-          tolerance_(tolerance) {}
-
-    void seat(double force) { seat_ = problem_.seat(force); }
-
-    /// An equilibrium on the way to one that counts.
-    Level trial(double force, Result& result) { return solved(force, std::max(trial_tolerance, tolerance_), result); }
-
-    Level at(double force, Result& result) {
-        const Level level = solved(force, tolerance_, result);
-        result.residual = std::max(result.residual, last_.residual);
-        result.converged = result.converged && last_.converged;
-        return level;
-    }
-
-    mechanics::Equilibrium& last() { return last_; }
-
- private:
-    Level solved(double force, double tolerance, Result& result) {
-        last_ = problem_.solve(force, tolerance);
-        result.iterations += last_.iterations;
-        return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
-                last_.punch_compliance,
-                last_.bond_energy + last_.contact_energy};
-    }
-
-    mechanics::ElasticSolver solver_;
-    mechanics::ContactProblem problem_;
-    Gauge gauge_;
-    double tolerance_;
-    double seat_ = 0.0;
-    mechanics::Equilibrium last_;
-};
 
 /// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
-Level peak_level(Levels& levels, const Specimen& specimen, const Fixture& fixture, const Options& options, Result& result) {
+Level peak_level(Equilibria& levels, const Specimen& specimen, const Fixture& fixture, const Options& options, Result& result) {
     if (options.max_force > 0.0) {
-        levels.seat(seating_force * options.max_force);
+        levels.seat(options.max_force);
         return levels.at(options.max_force, result);
     }
     const double wanted = greatest_deflection(specimen, options);
     double force = estimated_stiffness(specimen, fixture) * wanted;
-    levels.seat(seating_force * force);
+    levels.seat(force);
     Level level = levels.trial(force, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
     double slope = level.point.force / level.point.deflection;
@@ -124,7 +70,7 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     Result result;
     result.specimen = cut_specimen(std::move(state), options.model);
     result.fixture = place_fixture(result.specimen, options);
-    Levels equilibria(result.specimen, result.fixture, options.tolerance);
+    Equilibria equilibria(result.specimen, result.fixture, options.tolerance);
     std::vector<Level> levels{peak_level(equilibria, result.specimen, result.fixture, options, result)};
     result.peak = std::move(equilibria.last());
     result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),

@@ -1,0 +1,141 @@
+// strength_test.cpp: bars that fail bond by bond: the first break by beam theory, the sequence, and what breaking must leave alone.
+#include "tools/bend/strength_test.h"
+
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/bending.h"
+#include "tests/physics/bonded_lattice.h"
+#include "tests/physics/relative.h"
+#include "tools/bend/equilibria.h"
+#include "tools/bend/report.h"
+
+using namespace kiln;
+using namespace kiln::bend;
+using test::relative;
+
+namespace {
+
+Options brittle() {
+    Options options;
+    options.tensile_strength = 300e6;
+    return options;
+}
+
+Result failed(State state, const Options& options = brittle()) {
+    return bend_to_failure(std::move(state), options, [](double) { return true; });
+}
+
+double strength_of(const Result& result) {
+    return physics::bending_strength(result.peak_force, result.fixture.span, result.specimen.size[1], result.specimen.size[2]);
+}
+
+}  // namespace
+
+TEST_CASE("a chain breaks beside the punch, at the force that bends that bond to its strength: F = pi r3 sigma/(L - l)") {
+    // Eleven spheres; the cylinders stand under the second, the tenth and above the sixth.
+    const State state = test::make_lattice({.cells = {11, 1, 1}, .periodic = false});
+    Options options = brittle();
+    options.span = 8e-7;
+    const Result result = failed(state, options);
+    const double r = state.bonds->radius.front(), l = 1e-7;
+    const double expected = std::numbers::pi * r * r * r * options.tensile_strength / (options.span - l);
+    CHECK(result.curve[1].force == relative(expected, 2e-3));
+    CHECK(result.peak_force == result.curve[1].force);
+    CHECK(result.breaks == 1);
+    CHECK(result.curve.back().force == 0.0);
+    const auto first = static_cast<std::size_t>(std::find(result.broken.begin(), result.broken.end(), 1) - result.broken.begin());
+    REQUIRE(first < result.broken.size());
+    const auto [i, j] = result.specimen.body.network.pair[first];
+    const double middle = (result.specimen.body.network.position[static_cast<std::size_t>(i)][0] +
+                           result.specimen.body.network.position[static_cast<std::size_t>(j)][0]) /
+                          2.0;
+    CHECK(std::abs(middle - result.fixture.middle) == relative(l / 2.0, 1e-9));
+}
+
+TEST_CASE("a chain held by its shear strength breaks between a support and the punch: F/2 on the section of every bond there") {
+    const State state = test::make_lattice({.cells = {11, 1, 1}, .periodic = false});
+    Options options;
+    options.span = 8e-7;
+    options.shear_strength = 100e6;
+    const Result result = failed(state, options);
+    const double r = state.bonds->radius.front();
+    CHECK(result.curve[1].force == relative(2.0 * std::numbers::pi * r * r * options.shear_strength, 2e-3));
+}
+
+TEST_CASE("breaks follow one another: each bond once, work is spent, broken bonds carry nothing, the force falls far") {
+    const Result result = failed(test::make_rough_bar({20, 4, 4}));
+    CHECK(result.converged);
+    CHECK(result.breaks > 3);
+    CHECK(result.curve.size() == result.breaks + 2);
+    std::vector<std::int32_t> order;
+    for (std::size_t bond = 0; bond < result.broken.size(); ++bond) {
+        if (result.broken[bond] == 0) continue;
+        order.push_back(result.broken[bond]);
+        CHECK(result.loads[bond].force.norm() < 1e-3 * result.peak_force);
+    }
+    std::sort(order.begin(), order.end());
+    for (std::size_t k = 0; k < order.size(); ++k) CHECK(order[k] == static_cast<std::int32_t>(k) + 1);
+    CHECK(order.size() == result.breaks);
+    CHECK(result.failure_work > result.failure_stored);
+    CHECK(result.curve.back().force <= 0.1 * result.peak_force);
+    const State bent = bent_state(result, Json::array());
+    CHECK(std::any_of(bent.bonds->other.begin(), bent.bonds->other.end(),
+                      [](const NamedArray& each) { return each.name == "broken"; }));
+}
+
+TEST_CASE("bending strength does not depend on the scale, and doubles with the bonds' where contacts stay as they are") {
+    Options options = brittle();
+    options.until = 0.9;
+    const double strength = strength_of(failed(test::make_rough_bar({16, 3, 3}), options));
+    for (const double edge : {1e-9, 1.0}) {
+        CHECK(strength_of(failed(test::make_rough_bar({16, 3, 3}, edge), options)) == relative(strength, 1e-8));
+    }
+    options.tensile_strength *= 2.0;
+    CHECK(strength_of(failed(test::make_rough_bar({16, 3, 3}), options)) == relative(2.0 * strength, 0.1));
+}
+
+TEST_CASE("a bar softened step by step is the bar that was soft from the start") {
+    Result result;
+    Options options;
+    result.specimen = cut_specimen(test::make_rough_bar({16, 4, 4}), options.model);
+    result.fixture = place_fixture(result.specimen, options);
+    Equilibria sequence(result.specimen, result.fixture, 1e-8);
+    const double force = 1e-8;
+    sequence.seat(force);
+    const double whole = sequence.at(force, result).point.deflection;
+    mechanics::BondNetwork& network = result.specimen.body.network;
+    const auto spheres = mechanics::elastic_spheres(result.specimen.state, result.specimen.body);
+    for (std::size_t bond = network.bonds() / 2; bond < network.bonds() / 2 + 8; ++bond) {
+        mechanics::PairContact ends = mechanics::contact_between(network, spheres, network.pair[bond][0], network.pair[bond][1]);
+        ends.gap = 1.0;  // m: never closed
+        sequence.soften(bond, 1e-3, ends);
+        for (double* k : {&network.stiffness[bond].normal, &network.stiffness[bond].shear, &network.stiffness[bond].torsion,
+                          &network.stiffness[bond].bending})
+            *k *= 1e-3;
+    }
+    const double softened = sequence.at(force, result).point.deflection;
+    Equilibria fresh(result.specimen, result.fixture, 1e-8);
+    fresh.seat(force);
+    CHECK(softened > 1.01 * whole);
+    CHECK(fresh.at(force, result).point.deflection == relative(softened, 1e-6));
+    CHECK(result.converged);
+}
+
+TEST_CASE("failure: the same bytes for any number of threads") {
+    const int threads = omp_get_max_threads();
+    std::vector<std::string> documents;
+    Options options = brittle();
+    options.until = 0.9;
+    for (const int count : {1, 2}) {
+        omp_set_num_threads(count);
+        const Result result = failed(test::make_rough_bar({16, 4, 4}), options);
+        documents.push_back(document(result, options, Json::array()).dump() + Json(result.broken).dump());
+    }
+    omp_set_num_threads(threads);
+    CHECK(documents[0] == documents[1]);
+}

@@ -1,0 +1,49 @@
+// equilibria.cpp: the contact problem of a bar, and what is read from its equilibria.
+#include "tools/bend/equilibria.h"
+
+#include <algorithm>
+
+namespace kiln::bend {
+
+namespace {
+
+constexpr double seating_share = 1e-9;    // of the greatest force
+constexpr double trial_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
+constexpr double watched_gap = 0.2;       // of the mean radius: wider gaps do not close under small deflections
+
+/// Pairs without a bond so near that they may come to touch in the test.
+std::vector<mechanics::PairContact> pairs_that_may_touch(const Specimen& specimen) {
+    const mechanics::BondNetwork& network = specimen.body.network;
+    return mechanics::near_pairs(network, mechanics::elastic_spheres(specimen.state, specimen.body),
+                                 mechanics::Vector(network.nodes(), mechanics::Vec6::Zero()),
+                                 watched_gap * network.rotation_length);
+}
+
+}  // namespace
+
+Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, double tolerance)
+    : solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
+      problem_(specimen.body.network, &solver_, find_contacts(specimen, fixture).contacts, pairs_that_may_touch(specimen)),
+      gauge_(specimen, fixture),
+      tolerance_(tolerance) {}
+
+void Equilibria::seat(double greatest_force) { seat_ = problem_.seat(seating_share * greatest_force); }
+
+Level Equilibria::trial(double force, Result& result) { return solved(force, std::max(trial_tolerance, tolerance_), result); }
+
+Level Equilibria::at(double force, Result& result) {
+    const Level level = solved(force, tolerance_, result);
+    result.residual = std::max(result.residual, last_.residual);
+    result.converged = result.converged && last_.converged;
+    return level;
+}
+
+Level Equilibria::solved(double force, double tolerance, Result& result) {
+    last_ = problem_.solve(force, tolerance);
+    result.iterations += last_.iterations;
+    return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
+            last_.punch_compliance,
+            last_.bond_energy + last_.contact_energy};
+}
+
+}  // namespace kiln::bend

@@ -1,0 +1,43 @@
+// equilibria.h: a bar between its cylinders as equilibria under punch forces.
+#pragma once
+
+#include "mechanics/contact_problem.h"
+#include "tools/bend/result.h"
+
+namespace kiln::bend {
+
+struct Level {
+    Point point;
+    double compliance, energy;  // m/N, J
+};
+
+/// Equilibria of one test; their iterations, residuals and convergence go to its result.
+class Equilibria {
+   public:
+    Equilibria(const Specimen& specimen, const Fixture& fixture, double tolerance);
+
+    /// The bar seated by next to nothing of the greatest force (N): the zero of the punch's travel.
+    void seat(double greatest_force);
+
+    /// An equilibrium on the way to one that counts: as exact as searches need.
+    Level trial(double force, Result& result);
+
+    Level at(double force, Result& result);
+
+    mechanics::Equilibrium& last() { return last_; }
+
+    /// See mechanics::ContactProblem::soften.
+    void soften(std::size_t bond, double share, const mechanics::PairContact& ends) { problem_.soften(bond, share, ends); }
+
+   private:
+    Level solved(double force, double tolerance, Result& result);
+
+    mechanics::ElasticSolver solver_;
+    mechanics::ContactProblem problem_;
+    Gauge gauge_;
+    double tolerance_;
+    double seat_ = 0.0;
+    mechanics::Equilibrium last_;
+};
+
+}  // namespace kiln::bend

@@ -1,0 +1,145 @@
+// strength_test.cpp: the sequence of breaking bonds.
+#include "tools/bend/strength_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mechanics/connectivity.h"
+#include "tools/bend/equilibria.h"
+
+namespace kiln::bend {
+
+namespace {
+
+/// Of its stiffness that a broken bond keeps, so that a particle that hangs on nothing else stays in its place.
+constexpr double remnant = 1e-6;
+constexpr double strength_tolerance = 1e-3;  // of the stress at which a bond breaks
+constexpr int most_trials = 20;
+constexpr std::size_t most_breaks = 100000;
+
+struct Weakest {
+    std::size_t bond = 0;
+    double ratio = 0.0;  // of stress to strength
+};
+
+/// The bond nearest to its strength; of equals the first.
+Weakest find_weakest(const mechanics::BondNetwork& network, const std::vector<mechanics::BondLoad>& loads,
+                     const std::vector<std::int32_t>& broken, const Options& options) {
+    Weakest weakest;
+    for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
+        if (broken[bond] > 0) continue;
+        const physics::BondStress stress = mechanics::stress_of(network, bond, loads[bond]);
+        double ratio = 0.0;
+        if (options.tensile_strength > 0.0) ratio = stress.tensile / options.tensile_strength;
+        if (options.shear_strength > 0.0) ratio = std::max(ratio, stress.shear / options.shear_strength);
+        if (ratio > weakest.ratio) weakest = {bond, ratio};
+    }
+    return weakest;
+}
+
+/// A bar that loses its bonds one after the other.
+class Failure {
+   public:
+    Failure(Result& result, const Options& options)
+        : result_(result),
+          options_(options),
+          spheres_(mechanics::elastic_spheres(result.specimen.state, result.specimen.body)),
+          equilibria_(result.specimen, result.fixture, options.tolerance),
+          force_(estimated_stiffness(result.specimen, result.fixture) * greatest_deflection(result.specimen, options)) {
+        result_.broken.assign(result.specimen.body.network.bonds(), 0);
+        equilibria_.seat(force_);
+    }
+
+    /// False once the force has fallen far enough.
+    bool next() {
+        const Weakest weakest = load();
+        account();
+        if (level_.point.force <= options_.until * result_.peak_force) return false;
+        if (++result_.breaks == most_breaks)
+            throw Error("the bar did not fail although " + std::to_string(most_breaks) + " bonds broke");
+        crack(weakest.bond);
+        if (holds()) return true;
+        result_.curve.push_back({level_.point.deflection, level_.point.punch, 0.0});
+        return false;
+    }
+
+    mechanics::Equilibrium& last() { return equilibria_.last(); }
+
+   private:
+    /// The equilibrium in which the weakest bond has just reached its strength: stresses grow nearly as the force.
+    Weakest load() {
+        for (int trial = 0; trial < most_trials; ++trial) {
+            level_ = equilibria_.trial(force_, result_);
+            result_.loads = mechanics::bond_loads(result_.specimen.body.network, equilibria_.last().displacement);
+            const Weakest weakest = find_weakest(result_.specimen.body.network, result_.loads, result_.broken, options_);
+            if (!(weakest.ratio > 0.0)) throw Error("no bond of the bar is stressed towards the strength given, so none breaks");
+            if (std::abs(weakest.ratio - 1.0) <= strength_tolerance) return weakest;
+            force_ /= weakest.ratio;
+        }
+        throw Error("no punch force was found at which the next bond breaks");
+    }
+
+    /// Takes the point to the curve and to the work of the punch: trapezia between the points, in which the bar is nearly linear.
+    void account() {
+        const Point before = result_.curve.back();
+        const Point& here = level_.point;
+        result_.curve.push_back(here);
+        result_.failure_work += 0.5 * (before.force + here.force) * (here.punch - before.punch);
+        result_.failure_stored = level_.energy;
+        result_.peak_force = std::max(result_.peak_force, here.force);
+        result_.residual = std::max(result_.residual, equilibria_.last().residual);
+        result_.converged = result_.converged && equilibria_.last().converged;
+    }
+
+    /// True while a piece that whole bonds hold together reaches from support to support.
+    bool holds() const {
+        const mechanics::BondedBody& body = result_.specimen.body;
+        std::vector<std::array<std::int32_t, 2>> whole;
+        for (std::size_t bond = 0; bond < body.network.bonds(); ++bond) {
+            if (result_.broken[bond] == 0) whole.push_back(body.network.pair[bond]);
+        }
+        std::vector<std::int32_t> order(body.network.nodes());
+        std::iota(order.begin(), order.end(), 0);
+        const mechanics::Pieces pieces = mechanics::find_pieces(order, whole);
+        std::vector<std::int32_t> rows;
+        for (const std::int32_t node : pieces.of(pieces.largest())) rows.push_back(body.particle[static_cast<std::size_t>(node)]);
+        return reaches_supports(result_.specimen, result_.fixture, rows);
+    }
+
+    void crack(std::size_t bond) {
+        mechanics::BondNetwork& network = result_.specimen.body.network;
+        const auto [i, j] = network.pair[bond];
+        equilibria_.soften(bond, remnant, mechanics::contact_between(network, spheres_, i, j));
+        physics::BondStiffness& k = network.stiffness[bond];
+        k = {remnant * k.normal, remnant * k.shear, remnant * k.torsion, remnant * k.bending};
+        result_.broken[bond] = static_cast<std::int32_t>(result_.breaks);
+    }
+
+    Result& result_;
+    const Options& options_;
+    std::vector<mechanics::ElasticSphere> spheres_;
+    Equilibria equilibria_;
+    double force_;
+    Level level_{};
+};
+
+}  // namespace
+
+Result bend_to_failure(State state, const Options& options, const Watch& watch) {
+    Result result;
+    result.specimen = cut_specimen(std::move(state), options.model);
+    result.fixture = place_fixture(result.specimen, options);
+    result.curve.push_back({0.0, 0.0, 0.0});
+    Failure failure(result, options);
+    while (failure.next()) {
+        if (!watch(0.0)) return result;
+    }
+    result.peak = std::move(failure.last());
+    result.closed_gaps = result.peak.closed_gaps;
+    result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),
+                                                             [](double force) { return force > 0.0; }));
+    return result;
+}
+
+}  // namespace kiln::bend
