@@ -18,7 +18,7 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
     BlockMatrix result;
     result.columns = b.columns;
     result.start.assign(at(rows) + 1, 0);
-#pragma omp parallel
+#pragma omp parallel if (rows > worth_threads)
     {
         std::vector<std::int32_t> seen(at(b.columns), -1);
 #pragma omp for schedule(dynamic, rows_in_chunk)
@@ -37,7 +37,7 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
     for (std::size_t row = 0; row < at(rows); ++row) result.start[row + 1] += result.start[row];
     result.column.resize(at(result.start.back()));
     result.block.resize(at(result.start.back()));
-#pragma omp parallel
+#pragma omp parallel if (rows > worth_threads)
     {
         std::vector<std::int64_t> slot(at(b.columns), -1);
 #pragma omp for schedule(dynamic, rows_in_chunk)
@@ -73,7 +73,7 @@ template <typename Term>
 double chunked_sum(std::int64_t size, const Term& term) {
     const std::int64_t chunks = (size + rows_in_chunk - 1) / rows_in_chunk;
     std::vector<double> partial(at(chunks));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (size > worth_threads)
     for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
         partial[at(chunk)] = term(chunk * rows_in_chunk, std::min(size, (chunk + 1) * rows_in_chunk));
     }
@@ -101,7 +101,7 @@ ColumnIndex column_index(const BlockMatrix& matrix) {
 
 void multiply(const BlockMatrix& matrix, const Vector& x, Vector& y) {
     y.resize(at(matrix.rows()));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
     for (std::int32_t row = 0; row < matrix.rows(); ++row) {
         Vec6 sum = Vec6::Zero();
         for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
@@ -113,7 +113,7 @@ void multiply(const BlockMatrix& matrix, const Vector& x, Vector& y) {
 
 void residual(const BlockMatrix& matrix, const Vector& x, const Vector& b, Vector& r) {
     r.resize(at(matrix.rows()));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
     for (std::int32_t row = 0; row < matrix.rows(); ++row) {
         Vec6 sum = b[at(row)];
         for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
@@ -150,7 +150,7 @@ double dot(const Vector& x, const Vector& y) {
 double norm(const Vector& x) { return std::sqrt(dot(x, x)); }
 
 void add(double factor, const Vector& x, Vector& y) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (x.size() > worth_threads)
     for (std::size_t i = 0; i < x.size(); ++i) y[i] += factor * x[i];
 }
 

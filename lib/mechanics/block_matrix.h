@@ -15,6 +15,9 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 /// (m).
 using Vector = std::vector<Vec6>;
 
+/// Rows, bonds or pairs from which it pays to wake threads for a loop over them.
+inline constexpr int worth_threads = 1500;
+
 /// Compressed rows; columns ascend within a row.
 struct BlockMatrix {
     std::int32_t columns = 0;

@@ -179,7 +179,7 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
         matrix.start.push_back(static_cast<std::int64_t>(matrix.column.size()));
     }
     matrix.block.assign(matrix.column.size(), Mat6::Zero());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (nodes > worth_threads)
     for (std::int32_t node = 0; node < nodes; ++node) {
         const auto begin = matrix.column.begin() + matrix.first(node), end = matrix.column.begin() + matrix.last(node);
         const auto block_at = [&](std::int32_t column) -> Mat6& {
@@ -205,7 +205,7 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
 
 std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement, const Mat3& strain) {
     std::vector<BondLoad> loads(network.bonds());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (network.bonds() > worth_threads)
     for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
         const Vec6& first = displacement[at(network.pair[bond][0])];
         const Vec6& second = displacement[at(network.pair[bond][1])];
@@ -233,7 +233,7 @@ Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loa
     const Incidence incidence = find_incidence(network.nodes(), network.pair);
     const auto nodes = static_cast<std::int32_t>(network.nodes());
     Vector forces(network.nodes(), Vec6::Zero());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (nodes > worth_threads)
     for (std::int32_t node = 0; node < nodes; ++node) {
         for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
             const auto bond = at(incidence.bond[at(k)]);

@@ -19,7 +19,7 @@ SolveReport conjugate_gradient(const BlockMatrix& matrix, const std::function<vo
             p = z;
         } else {
             const double beta = rz / old_rz;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p.size() > worth_threads)
             for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + beta * p[i];
         }
         multiply(matrix, p, q);

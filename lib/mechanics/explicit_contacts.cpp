@@ -66,7 +66,7 @@ Vec3 ExplicitContacts::held(const Touch& touch, const Vec3& slide, Vec3& stretch
 
 void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force) {
     const double length = network_.rotation_length;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (pairs_.size() > worth_threads)
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const PairContact& pair = pairs_[k];
         const Vec3 shift = displacement[at(pair.j)].head<3>() - displacement[at(pair.i)].head<3>();

@@ -78,7 +78,7 @@ void ExplicitMotion::place(const Vector& displacement, double travel) {
 /// force where it drives the motion, and adds it where it brakes.
 void ExplicitMotion::kick_and_drift() {
     const double dt = time_step_, damping = model_.damping;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (velocity_.size() > worth_threads)
     for (std::size_t node = 0; node < velocity_.size(); ++node) {
         Vec6& v = velocity_[node];
         double lost = 0.0;
@@ -95,7 +95,7 @@ void ExplicitMotion::kick_and_drift() {
 
 void ExplicitMotion::move_bonds() {
     const double dt = time_step_, per_length = 1.0 / network_.rotation_length;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (hold_.size() > worth_threads)
     for (std::size_t bond = 0; bond < hold_.size(); ++bond) {
         const std::size_t i = at(network_.pair[bond][0]), j = at(network_.pair[bond][1]);
         const Vec3 shift = displacement_[j].head<3>() - displacement_[i].head<3>();
@@ -113,7 +113,7 @@ void ExplicitMotion::move_bonds() {
 
 void ExplicitMotion::gather() {
     const double per_length = 1.0 / network_.rotation_length;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (force_.size() > worth_threads)
     for (std::size_t node = 0; node < force_.size(); ++node) {
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
         for (std::int64_t k = incidence_.start[node]; k < incidence_.start[node + 1]; ++k) {

@@ -20,7 +20,7 @@ std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 
 std::vector<Mat6> inverse_diagonal(const BlockMatrix& matrix) {
     std::vector<Mat6> inverse(at(matrix.rows()));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
     for (std::int32_t row = 0; row < matrix.rows(); ++row) {
         for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
             if (matrix.column[at(k)] == row) inverse[at(row)] = matrix.block[at(k)].llt().solve(Mat6::Identity());
@@ -40,7 +40,7 @@ double largest_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& in
         const double scale = 1.0 / norm(x);
         for (Vec6& each : x) each *= scale;
         multiply(matrix, x, y);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (y.size() > worth_threads)
         for (std::size_t i = 0; i < y.size(); ++i) x[i] = inverse[i] * y[i];
         value = norm(x);
     }
@@ -50,7 +50,7 @@ double largest_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& in
 /// (I - omega D^-1 A) P.
 BlockMatrix smoothed(const BlockMatrix& matrix, const std::vector<Mat6>& inverse, double omega, const BlockMatrix& rigid) {
     BlockMatrix result = product(matrix, rigid);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (result.rows() > worth_threads)
     for (std::int32_t row = 0; row < result.rows(); ++row) {
         const Mat6 factor = -omega * inverse[at(row)];
         for (std::int64_t k = result.first(row); k < result.last(row); ++k) {
@@ -134,14 +134,14 @@ void Multigrid::smooth(Level& level, bool from_zero) {
     for (std::size_t step = 0; step < factors.size(); ++step) {
         const auto [memory, gain] = factors[step];
         if (from_zero && step == 0) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (size > worth_threads)
             for (std::size_t i = 0; i < size; ++i) {
                 level.step[i] = gain * (level.inverse_diagonal[i] * level.load[i]);
                 level.solution[i] = level.step[i];
             }
             continue;
         }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (size > worth_threads)
         for (std::size_t i = 0; i < size; ++i) {
             Vec6 rest = level.load[i];
             const auto row = static_cast<std::int32_t>(i);
@@ -171,7 +171,7 @@ void Multigrid::cycle(std::size_t index) {
     Vector& rest = level.step;
     residual(*level.matrix, level.solution, level.load, rest);
     coarser.load.resize(at(level.prolongation.columns));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (coarser.load.size() > worth_threads)
     for (std::size_t a = 0; a < coarser.load.size(); ++a) {
         Vec6 sum = Vec6::Zero();
         for (std::int64_t e = level.restriction.start[a]; e < level.restriction.start[a + 1]; ++e) {

@@ -66,6 +66,26 @@ TEST_CASE("a slender simple cubic bar has its own flexural stiffness within 3 %,
     }
 }
 
+TEST_CASE("spans from 3 to 40 heights: bending and shear of a Timoshenko beam, in as many iterations for short as for long bars") {
+    int most = 0, least = 1 << 30;
+    for (const int slenderness : {3, 6, 12, 40}) {
+        constexpr int height = 6;
+        Options options;
+        options.cycles = 1;
+        options.span = slenderness * height * 1e-7;
+        const Result result = tested(test::make_lattice({.cells = {(slenderness + 2) * height, 3, height}}), options);
+        CHECK(result.converged);
+        const double L = options.span, bending = L * L * L / (48.0 * flexural_stiffness(result));
+        const double G = result.specimen.body.network.stiffness.front().shear / 2e-7;
+        const double shear = L / (4.0 * 5.0 / 6.0 * G * result.specimen.size[1] * result.specimen.size[2]);
+        // Beam theory leaves out the near field of the cylinders, which reaches as far as a share of the height.
+        CHECK(1.0 / slope_of(result) == relative(bending + shear, 0.3 / slenderness));
+        most = std::max(most, result.iterations);
+        least = std::min(least, result.iterations);
+    }
+    CHECK(most < 3 * least);
+}
+
 TEST_CASE("the wanted deflection or force is met, cycles repeat, unloading retraces loading") {
     Options options;
     options.cycles = 2;
@@ -140,7 +160,7 @@ TEST_CASE("the same bytes for any number of threads, states included") {
     std::vector<std::string> documents;
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
-        const Result result = tested(test::make_rough_bar({20, 40, 6}));
+        const Result result = tested(test::make_rough_bar({20, 20, 6}));
         documents.push_back(document(result, {}, Json::array()).dump());
         for (const Vec3& position : bent_state(result, Json::array()).particles.position)
             for (const double x : position) documents.back() += std::to_string(std::bit_cast<std::uint64_t>(x)) + " ";

@@ -133,7 +133,7 @@ TEST_CASE("failure: the same bytes for any number of threads") {
     options.until = 0.9;
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
-        const Result result = failed(test::make_rough_bar({16, 4, 4}), options);
+        const Result result = failed(test::make_rough_bar({26, 8, 8}), options);
         documents.push_back(document(result, options, Json::array()).dump() + Json(result.broken).dump());
     }
     omp_set_num_threads(threads);

@@ -88,17 +88,23 @@ TEST_CASE("thin bonds: stiffness falls to zero, as a cylinder's where the bond h
             CHECK(thin.normal / thinner.normal == relative(100.0, 1e-3));
             CHECK(thin.bending / thinner.bending == relative(1e4, 1e-3));
             CHECK(thin.torsion / thinner.torsion == relative(1e4, 1e-3));
-            CHECK(thin.shear > 0.0);
+            // The section shears as its area, the beam bends as the square of that.
+            CHECK(thin.shear / thinner.shear == relative(shear == BondShear::section ? 100.0 : 1e4, 1e-3));
         }
     }
 }
 
 TEST_CASE("a bond without length counts as a thousandth of the smaller radius long") {
-    for (const BondLaw law : {BondLaw::series, BondLaw::neck}) {
-        const BondGeometry none{40e-9, 50e-9, 70e-9, 30e-9, 0.0}, least{40e-9, 50e-9, 70e-9, 30e-9, 40e-12};
-        const BondStiffness k = bond_stiffness(law, BondShear::section, E, G, none);
-        CHECK(std::isfinite(k.normal));
-        check_equal(k, bond_stiffness(law, BondShear::section, E, G, least), 1e-12);
+    const BondGeometry none{40e-9, 50e-9, 70e-9, 30e-9, 0.0}, least{40e-9, 50e-9, 70e-9, 30e-9, 40e-12};
+    for (const BondShear shear : shears) {
+        for (const BondLaw law : {BondLaw::series, BondLaw::neck}) {
+            const BondStiffness k = bond_stiffness(law, shear, E, G, none);
+            CHECK(std::isfinite(k.normal));
+            CHECK(k.shear > 0.0);
+            check_equal(k, bond_stiffness(law, shear, E, G, least), 1e-12);
+        }
+        const BondStiffness k = bond_stiffness(BondLaw::centre, shear, E, G, none);  // does not ask for the length
+        check_equal(k, bond_stiffness(BondLaw::centre, shear, E, G, {40e-9, 50e-9, 70e-9, 30e-9, 60e-9}), 1e-12);
     }
 }
 
