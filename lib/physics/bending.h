@@ -4,6 +4,8 @@
 // A = b h, G = E/(2 (1 + nu)). Source: S. P. Timoshenko, Strength of Materials, part I, effect of shear on deflection.
 #pragma once
 
+#include <cmath>
+
 namespace kiln::physics {
 
 /// Factor by which shear softens the bar: 1 + 2.4 (1 + nu) (h/L)^2; height h and span L in m.
@@ -17,6 +19,11 @@ inline double shear_correction(double height, double span, double poisson_ratio)
 inline double bending_modulus(double slope, double span, double width, double height, double poisson_ratio) {
     return slope * span * span * span / (4.0 * width * height * height * height) * shear_correction(height, span, poisson_ratio);
 }
+
+/// Span, m, of the bar that would show the same deflection with its forces at the ends of the span. Here the supports' resultant
+/// forces act a distance `held` apart, and the deflection under the load is read against the bar above two points a distance `read`
+/// apart: F/(48 E I) (held^3 + 3/2 held^2 (read - held)), the bar being straight beyond its supports.
+inline double equivalent_span(double held, double read) { return std::cbrt(held * held * (1.5 * read - 0.5 * held)); }
 
 /// Bending strength, Pa: the stress that the greatest force F (N) would cause at the lower face of an elastic bar, 3 F L/(2 b h^2)
 /// (ASTM C1161-18, Eq. 5 for three points); span L, width b, height h in m.

@@ -145,6 +145,17 @@ mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixtur
     return tooling;
 }
 
+double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const double> force) {
+    std::array<double, 3> moment{}, sum{};
+    for (std::size_t c = 0; c < tooling.contacts.size(); ++c) {
+        const mechanics::WallContact& contact = tooling.contacts[c];
+        const auto cylinder = static_cast<std::size_t>(contact.cylinder);
+        moment[cylinder] += force[c] * specimen.body.network.position[static_cast<std::size_t>(contact.node)][0];
+        sum[cylinder] += force[c];
+    }
+    return moment[1] / sum[1] - moment[0] / sum[0];
+}
+
 Gauge::Gauge(const Specimen& specimen, const Fixture& fixture) {
     const mechanics::BondNetwork& network = specimen.body.network;
     const double layer = 2.0 * network.rotation_length;  // mean diameter

@@ -69,6 +69,7 @@ Json document(const Result& result, const Options& options, Json history) {
               {"units", "SI"},
               {"relative_density", specimen.relative_density},
               {"span", result.fixture.span},
+              {"effective_span", physics::equivalent_span(result.held_span, result.fixture.span)},
               {"width", specimen.size[1]},
               {"height", specimen.size[2]},
               {"length", specimen.size[0]},

@@ -30,6 +30,7 @@ struct Result {
     mechanics::Equilibrium peak;             // under the greatest force; of a test to failure, at its end
     std::vector<mechanics::BondLoad> loads;  // of the bonds there
     double peak_force = 0.0;                 // N
+    double held_span = 0.0;                  // m, between the supports' resultants under the greatest force
     std::size_t contacts = 0;                // that carry force there
     std::size_t closed_gaps = 0;             // pairs without a bond that come to touch there
     int iterations = 0;                      // of the linear solver, in all

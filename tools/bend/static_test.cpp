@@ -75,6 +75,7 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     result.peak = std::move(equilibria.last());
     result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),
                                                              [](double force) { return force > 0.0; }));
+    result.held_span = held_span(result.specimen, find_contacts(result.specimen, result.fixture), result.peak.contact_force);
     result.loads = mechanics::bond_loads(result.specimen.body.network, result.peak.displacement);
     result.closed_gaps = result.peak.closed_gaps;
     const double greatest = levels.back().point.force;
