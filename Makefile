@@ -93,6 +93,7 @@ asan:                           ## build with address and undefined-behaviour sa
 # ---- benchmarks, manual pages, installation -----------------------------------------------------------------------------------
 bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines in build/bench
 	@for name in $(BENCH_NAMES); do echo "== $$name"; $(BUILD)/bench/$$name | tee $(BUILD)/bench/$$name.jsonl; done
+	@echo "== bending"; BUILD=$(abspath $(BUILD)) $(PYTHON) bench/bending.py -o $(BUILD)/bench/bending.png | tee $(BUILD)/bench/bending.jsonl
 
 man: $(TOOLS:%=$(BUILD)/man/%.1) $(BUILD)/man/dem-convert.1 $(BUILD)/man/dem-state.5   ## manual pages into build/man
 

@@ -44,16 +44,17 @@ def make_bar(folder, particles, seed):
 
 def unloading_slope(test):
     """Force over deflection between 5/6 and 1/3 of the peak, in the last unloading, N/m."""
-    text = json.dumps(test).replace("'", "")
-    done = subprocess.run([os.path.join(PROGRAMS, "analyze"), "modulus"], input=text, check=True, stdout=subprocess.PIPE, text=True)
+    text = json.dumps(test)
+    done = subprocess.run([os.path.join(PROGRAMS, "analyze"), "modulus"], input=text, check=True, stdout=subprocess.PIPE,
+                          text=True)
     return json.loads(done.stdout)["slope"]
 
 
 def elastic_modulus(test, slope, near_field):
     """Modulus of a bar, Pa, from a span between the supports' resultant forces.
 
-    near_field: of a load on a line, after von Karman and Seewald (Timoshenko & Goodier, Theory of Elasticity, bending of a beam by a
-    concentrated force): 1 + (2.4 + 1.5 nu) (h/L)^2 - 0.84 (h/L)^3; else Timoshenko's beam, as `analyze modulus`.
+    near_field: of a load on a line, after von Karman and Seewald (Timoshenko & Goodier, Theory of Elasticity, bending of a beam
+    by a concentrated force): 1 + (2.4 + 1.5 nu) (h/L)^2 - 0.84 (h/L)^3; else Timoshenko's beam, as `analyze modulus`.
     """
     span, height, nu = test["effective_span"], test["height"], test["poisson_ratio"]
     ratio = height / span
@@ -69,7 +70,8 @@ def methods(folder, particles):
     usual = None
     for factor, damping in ((1, 0.7), (8, 0.7), (4, 0.7), (2, 0.7), (0.3, 0.7), (1, 0.1), (1, 0.3), (1, 0.9)):
         speed = f"--punch-velocity {usual * factor}m/s" if usual else ""
-        text, taken = pipe("bend --method dynamic --cycles 1 --damping {damping} {speed} {bar}", damping=damping, speed=speed, bar=bar)
+        text, taken = pipe("bend --method dynamic --cycles 1 --damping {damping} {speed} {bar}", damping=damping, speed=speed,
+                           bar=bar)
         test = json.loads(text)
         usual = usual or test["punch_velocity"]
         say("method", method="dynamic", particles=particles, velocity=test["punch_velocity"], velocity_factor=factor,
@@ -78,7 +80,7 @@ def methods(folder, particles):
 
 
 def thickness(folder, sizes, seeds):
-    """One line a bar, then the limits of straight lines in d/h."""
+    """One line a bar, then the limits of straight lines in d/h; bars scatter as d/h."""
     found = []
     for particles in sizes:
         for seed in seeds:
@@ -94,7 +96,7 @@ def thickness(folder, sizes, seeds):
                 iterations=test["iterations"], seconds=seconds)
     inverse, beam, near = numpy.array(found).T
     for name, ratio in (("beam", beam), ("near_field", near)):
-        (slope, limit), covariance = numpy.polyfit(inverse, ratio, 1, cov=True)
+        (slope, limit), covariance = numpy.polyfit(inverse, ratio, 1, w=1 / inverse, cov=True)
         say("thickness limit", formula=name, limit=limit, standard_error=float(numpy.sqrt(covariance[1, 1])), slope=slope)
     return inverse, near
 
@@ -104,7 +106,7 @@ def draw(inverse, ratio, path):
     matplotlib.use("Agg")
     from matplotlib import pyplot
     figure, axes = pyplot.subplots(figsize=(5.2, 3.6), layout="constrained")
-    slope, limit = numpy.polyfit(inverse, ratio, 1)
+    slope, limit = numpy.polyfit(inverse, ratio, 1, w=1 / inverse)
     line = numpy.array([0, inverse.max() * 1.05])
     axes.plot(inverse, ratio, "o", label="bars, whole height and width of the box")
     axes.plot(line, limit + slope * line, "-", color="#777777", label=f"straight line, limit {limit:.2f}")

@@ -1,5 +1,5 @@
 // mechanics.cpp: the elastic solver against the number of particles, the slenderness of the bar and the tolerance asked for.
-// Bars are disordered lattices with bonds from thin to thick. `mechanics N...` measures bars of other sizes, up to the memory there is.
+// Bars are disordered lattices with bonds from thin to thick. `mechanics N...` measures bars of other sizes, as memory allows.
 #include <sys/resource.h>
 
 #include <algorithm>
