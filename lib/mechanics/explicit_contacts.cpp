@@ -29,7 +29,8 @@ ExplicitContacts::ExplicitContacts(const BondNetwork& network, std::vector<Elast
       tooling_(std::move(tooling)),
       friction_(friction),
       margin_(margin * network.rotation_length),
-      wall_stretch_(tooling_.contacts.size(), Vec3::Zero()) {
+      wall_stretch_(tooling_.contacts.size(), Vec3::Zero()),
+      wall_force_(tooling_.contacts.size(), 0.0) {
     search(Vector(network.nodes(), Vec6::Zero()));
 }
 
@@ -107,6 +108,7 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
         if (friction_ == 0.0) place[0] = network_.position[node][0];  // a roller goes along with what it carries
         const Vec3 towards(cylinder.x - place[0], 0.0, cylinder.z - (cylinder.punch ? travel : 0.0) - place[2]);
         const double distance = towards.norm(), overlap = cylinder.radius + contact.radius - distance;
+        wall_force_[c] = 0.0;
         if (overlap <= 0.0) {
             wall_stretch_[c].setZero();
             continue;
@@ -125,6 +127,7 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
             on_sphere[0] = 0.0;
         }
         force[node].head<3>() += on_sphere;
+        wall_force_[c] = std::abs(on_sphere[2]);
         if (cylinder.punch) punch_force_ -= on_sphere[2];
     }
 }

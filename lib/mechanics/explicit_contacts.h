@@ -23,6 +23,8 @@ class ExplicitContacts {
     double punch_force() const { return punch_force_; }  // N, downwards
     double energy() const { return energy_; }            // J, stored
     double friction_loss() const { return loss_; }       // J, since the beginning
+    /// Along z, N, of every contact with a cylinder, as they stand in the tooling.
+    const std::vector<double>& wall_forces() const { return wall_force_; }
     std::size_t touching_walls() const { return touching_walls_; }
     std::size_t touching_pairs() const { return touching_pairs_; }
     /// Pairs that may touch, as of now.
@@ -49,6 +51,7 @@ class ExplicitContacts {
     std::vector<double> overlap_;     // of the pairs, m
     std::vector<Vec3> pair_stretch_;  // of the tangential springs, m
     std::vector<Vec3> wall_stretch_;
+    std::vector<double> wall_force_;
     Vector searched_at_;  // displacements at the last search
     int steps_since_check_ = 0;
     double punch_force_ = 0.0, energy_ = 0.0, loss_ = 0.0;

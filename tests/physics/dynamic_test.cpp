@@ -67,6 +67,7 @@ TEST_CASE("the dynamic slope comes to the static one as the punch slows down; wo
     const Result usual = bend_dynamic(state, options, no_stop);
     CHECK(unloading_slope(usual) == relative(expected, 0.01));
     CHECK(usual.energy_error < 1e-3);
+    CHECK(usual.held_span == relative(bend_static(state, {}, no_stop).held_span, 0.01));
     CHECK(usual.dynamic.energy.damping > 0.0);
     options.punch_velocity = 10.0 * usual.dynamic.velocity;
     const double fast = unloading_slope(bend_dynamic(state, options, no_stop));

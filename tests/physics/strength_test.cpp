@@ -46,6 +46,7 @@ TEST_CASE("a chain breaks beside the punch, at the force that bends that bond to
     const double expected = std::numbers::pi * r * r * r * options.tensile_strength / (options.span - l);
     CHECK(result.curve[1].force == relative(expected, 2e-3));
     CHECK(result.peak_force == result.curve[1].force);
+    CHECK(result.held_span == relative(options.span, 1e-6));
     CHECK(result.breaks == 1);
     CHECK(result.curve.back().force == 0.0);
     const auto first = static_cast<std::size_t>(std::find(result.broken.begin(), result.broken.end(), 1) - result.broken.begin());

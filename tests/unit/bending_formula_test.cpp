@@ -1,6 +1,8 @@
 // bending_formula_test.cpp: the bending modulus against the Timoshenko beam it comes from.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "physics/bending.h"
 
 using namespace kiln::physics;
@@ -14,6 +16,12 @@ TEST_CASE("bending modulus inverts the deflection of a Timoshenko beam") {
     const double shear = force * span / (4.0 * (5.0 / 6.0) * shear_modulus * width * height);
     CHECK(bending_modulus(force / (bending + shear), span, width, height, poisson_ratio) == Approx(modulus).epsilon(1e-13));
     CHECK(shear_correction(height, span, poisson_ratio) == Approx((bending + shear) / bending).epsilon(1e-13));
+}
+
+TEST_CASE("equivalent span: none to make up for where forces act at its ends, else the bar's deflection between straight ends") {
+    CHECK(equivalent_span(3.0, 3.0) == Approx(3.0).epsilon(1e-14));
+    // Held 2 apart, read 3 apart: 2^3 of the beam between its supports and 3/2 2^2 of the slope at them over half the difference.
+    CHECK(equivalent_span(2.0, 3.0) == Approx(std::cbrt(8.0 + 6.0)).epsilon(1e-14));
 }
 
 TEST_CASE("bending modulus of a slender bar does not depend on its Poisson ratio") {

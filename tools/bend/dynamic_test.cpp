@@ -159,6 +159,8 @@ void Strokes::keep_peak() {
     result_.peak.bond_energy = peak_energy_.bonds;
     result_.peak.contact_energy = peak_energy_.contacts;
     result_.loads = motion_.loads();
+    result_.held_span =
+        held_span(result_.specimen, find_contacts(result_.specimen, result_.fixture), motion_.contacts().wall_forces());
     result_.contacts = motion_.contacts().touching_walls();
     result_.closed_gaps = motion_.contacts().touching_pairs();
 }

@@ -87,7 +87,11 @@ class Failure {
         result_.curve.push_back(here);
         result_.failure_work += 0.5 * (before.force + here.force) * (here.punch - before.punch);
         result_.failure_stored = level_.energy;
-        result_.peak_force = std::max(result_.peak_force, here.force);
+        if (here.force > result_.peak_force) {
+            result_.peak_force = here.force;
+            const mechanics::Tooling tooling = find_contacts(result_.specimen, result_.fixture);
+            result_.held_span = held_span(result_.specimen, tooling, equilibria_.last().contact_force);
+        }
         result_.residual = std::max(result_.residual, equilibria_.last().residual);
         result_.converged = result_.converged && equilibria_.last().converged;
     }
