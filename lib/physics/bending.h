@@ -26,7 +26,7 @@ inline double bending_modulus(double slope, double span, double width, double he
 inline double equivalent_span(double held, double read) { return std::cbrt(held * held * (1.5 * read - 0.5 * held)); }
 
 /// Bending strength, Pa: the stress that the greatest force F (N) would cause at the lower face of an elastic bar, 3 F L/(2 b h^2)
-/// (ASTM C1161-18, Eq. 5 for three points); span L, width b, height h in m.
+/// (ASTM C1161, three points); span L, width b, height h in m.
 inline double bending_strength(double force, double span, double width, double height) {
     return 1.5 * force * span / (width * height * height);
 }
