@@ -12,6 +12,7 @@ namespace {
 
 constexpr double least_reach = 0.01;   // of the mean radius, that candidates for touch may be apart
 constexpr double guess_margin = 1.3;   // of the closing that is guessed, that makes a candidate
+constexpr double harmless_overlap = 0.05;  // of the mean closing of contacts in a step, that a pair left out may reach
 constexpr double sticking_gap = 1e-6;  // of the reduced radius, between rigid particles that touch
 
 }  // namespace
@@ -90,10 +91,11 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
 }
 
 bool Candidates::complete(const Motion& motion) const {
+    const double harmless = harmless_overlap * 2.0 * packing_.mean_radius() * motion.strain.cwiseAbs().maxCoeff();
     const auto touching_among = [&](const std::vector<Pair>& pairs) {
         std::size_t count = 0;
 #pragma omp parallel for schedule(static) reduction(+ : count)
-        for (std::size_t row = 0; row < pairs.size(); ++row) count += end_overlap(pairs[row], motion) > 0.0;
+        for (std::size_t row = 0; row < pairs.size(); ++row) count += end_overlap(pairs[row], motion) > harmless;
         return count;
     };
     return touching_among(packing_.pairs()) == touching_among(chosen_);  // the list, perhaps a longer one by now, holds the chosen

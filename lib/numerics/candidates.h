@@ -21,7 +21,8 @@ class Candidates {
     /// diffusion: integral of Delta over the step for each pair of materials, m5/N.
     void choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion);
 
-    /// True if no pair of the packing's list that was not chosen touches after the motion.
+    /// True if no pair of the packing's list that was not chosen touches after the motion, or so little that it may begin with the
+    /// next step.
     bool complete(const Motion& motion) const;
 
     /// Pairs and what they bring into the step, as the nodes of rigid clusters see them.

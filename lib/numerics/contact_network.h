@@ -43,7 +43,7 @@ class ContactNetwork {
     template <typename Work>
     void for_chunks(const Work& work) const {
         const auto count = static_cast<std::int64_t>(chunks_.size());
-#pragma omp parallel for schedule(static) if (count >= fewest_parallel)
+#pragma omp parallel for schedule(dynamic) if (count >= fewest_parallel)
         for (std::int64_t index = 0; index < count; ++index) work(static_cast<std::size_t>(index));
     }
 

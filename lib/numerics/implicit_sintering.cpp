@@ -82,18 +82,14 @@ Motion ImplicitSintering::guess_from(const Motion& motion, double factor) const 
     return guess;
 }
 
-Motion ImplicitSintering::solve(const Motion* first, const Motion& guess, const std::vector<double>& diffusion, StepReport& report) {
-    candidates_.choose(guess, first ? *first : guess, diffusion);
-    const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
+Motion ImplicitSintering::solve(const Motion* first, const Motion& guess, const RigidClusters& clusters, const StepSettings& settings,
+                                StepReport& report) {
     candidates_.turn_to_nodes(clusters);
-    StepSettings settings;
-    settings.allowed_strain = allowed_strain(clusters.locked());
-    settings.pressure = candidates_.unit() * settings_.pressure;
-    settings.solver_tolerance = settings_.solver_tolerance;
     SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs(), settings);
     Motion motion = clusters.nodes(guess);
     project(motion, settings.allowed_strain);
-    report = first ? solver.second_order(candidates_.steps(), clusters.nodes(*first), motion) : solver.first_order(candidates_.steps(), motion);
+    report = first ? solver.second_order(candidates_.steps(), clusters.nodes(*first), motion)
+                   : solver.first_order(candidates_.steps(), motion);
     for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
         report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
     newton_ += report.newton;
@@ -109,16 +105,24 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double unti
     Trial trial;
     trial.until = until;
     trial.motion = guess;
+    candidates_.choose(guess, guess, diffusion);
+    const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
+    const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
+                                .pressure = candidates_.unit() * settings_.pressure,
+                                .solver_tolerance = settings_.solver_tolerance};
     const auto solve_all = [&](const Motion* first) {  // until no pair that comes to touch was left out
-        do {
+        for (bool again = first != nullptr;; again = true) {
+            if (again) candidates_.choose(trial.motion, first ? *first : guess, diffusion);
             StepReport report;
-            trial.motion = solve(first, trial.motion, diffusion, report);
+            trial.motion = solve(first, trial.motion, clusters, settings, report);
             trial.report.converged = trial.report.converged && report.converged;
             trial.report.stress = report.stress;
             trial.closing = packing_.closing_bound(trial.motion);
             trial.leapt = trial.closing > largest_closing * radius;  // no list of pairs is made for such a leap: the step is too long
-            if (!trial.leapt) packing_.pairs_within(trial.closing);
-        } while (!trial.leapt && !candidates_.complete(trial.motion));
+            if (trial.leapt) return;
+            packing_.pairs_within(trial.closing);
+            if (candidates_.complete(trial.motion)) return;
+        }
     };
     solve_all(nullptr);
     trial.first_order = trial.motion;

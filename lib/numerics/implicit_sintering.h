@@ -27,7 +27,8 @@ class ImplicitSintering : public SinteringMethod {
         bool leapt = false;                                 // further than any list of pairs reaches
     };
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
-    Motion solve(const Motion* first, const Motion& guess, const std::vector<double>& diffusion, StepReport& report);
+    Motion solve(const Motion* first, const Motion& guess, const RigidClusters& clusters, const StepSettings& settings,
+                 StepReport& report);
     Trial attempt(double duration, double until, const Motion& guess);
     Trial accepted_attempt(double& duration, double latest_time);
     Trial land_on(double log_change, double& duration, const Trial& beyond);

@@ -23,7 +23,7 @@ constexpr const char* footer =
     "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 5min -o forged.kiln green.kiln\n"
     "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln green.kiln";
 
-constexpr double solver_share = 3.0;  // tolerance of a step's motion over that of the run: the density feels its square
+constexpr double solver_share = 10.0;  // tolerance of a step's motion over that of the run: the density feels its square
 
 void check_list(const std::vector<double>& values, double above, double below, const std::string& option) {
     for (const double value : values)
