@@ -31,6 +31,7 @@ LIB_OBJECTS  := $(LIB_SOURCES:%.cpp=$(BUILD)/%.o)
 TOOL_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(filter-out %/main.cpp,$(wildcard tools/*/*.cpp)))
 UNIT_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tests/unit/*.cpp tests/physics/*.cpp))
 BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
+BENCH_SCRIPTS := $(basename $(notdir $(wildcard bench/*.py)))
 PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
 
 .PHONY: all demo test unit-test cli-test bench man install asan clean help packages
@@ -91,9 +92,12 @@ asan:                           ## build with address and undefined-behaviour sa
 	    OPTIMISE="-O1 -UNDEBUG" test
 
 # ---- benchmarks, manual pages, installation -----------------------------------------------------------------------------------
-bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines in build/bench
+bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines and pictures in build/bench
 	@for name in $(BENCH_NAMES); do echo "== $$name"; $(BUILD)/bench/$$name | tee $(BUILD)/bench/$$name.jsonl; done
-	@echo "== bending"; BUILD=$(abspath $(BUILD)) $(PYTHON) bench/bending.py -o $(BUILD)/bench/bending.png | tee $(BUILD)/bench/bending.jsonl
+	@for name in $(BENCH_SCRIPTS); do \
+	    echo "== $$name"; \
+	    BUILD=$(abspath $(BUILD)) $(PYTHON) bench/$$name.py -o $(BUILD)/bench/$$name.png | tee $(BUILD)/bench/$$name.jsonl; \
+	done
 
 man: $(TOOLS:%=$(BUILD)/man/%.1) $(BUILD)/man/dem-convert.1 $(BUILD)/man/dem-state.5   ## manual pages into build/man
 

@@ -175,7 +175,7 @@ print(numpy.array_equal(mesh.cell_data["normal_force"][1], state["bonds"]["norma
 END
     assert_line --index 0 True
     assert_line --index 1 "True True"
-    assert_line --index 2 "True ['bond_radius', 'force', 'length', 'moment', 'normal_force', 'volume']"
+    assert_line --index 2 "True ['bond_radius', 'force', 'length', 'moment', 'normal_force', 'shear_stress', 'tensile_stress', 'volume']"
     "$PYTHON" -c 'import vtk' 2>/dev/null || skip "VTK for Python is not installed"
     run -0 "$PYTHON" - <<'END'
 import xml.etree.ElementTree
