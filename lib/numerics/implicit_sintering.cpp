@@ -16,6 +16,8 @@ constexpr double largest_log_step = 0.05;   // of the density
 constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
+constexpr std::size_t small_packing = 1000;  // particles; solving closely costs nothing there
+constexpr double small_share = 1e-3;        // of the solver's tolerance
 constexpr std::size_t most_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
@@ -109,7 +111,7 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double unti
     const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
     const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
                                 .pressure = candidates_.unit() * settings_.pressure,
-                                .solver_tolerance = settings_.solver_tolerance};
+                                .solver_tolerance = settings_.solver_tolerance * (packing_.size() < small_packing ? small_share : 1.0)};
     const auto solve_all = [&](const Motion* first) {  // until no pair that comes to touch was left out
         for (bool again = first != nullptr;; again = true) {
             if (again) candidates_.choose(trial.motion, first ? *first : guess, diffusion);
