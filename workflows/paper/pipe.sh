@@ -9,4 +9,4 @@ $SINTER green -n "${1:-99000}" --diameter 100nm --density 0.43 --aspect 4:1:1 --
     $BONDIFY |
     $BEND |
     $ANALYZE modulus |
-    $ANALYZE fit --law knudsen
+    $ANALYZE fit --law knudsen --weights equal
