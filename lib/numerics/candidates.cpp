@@ -31,15 +31,12 @@ double Candidates::end_overlap(const Pair& pair, const Motion& motion) const {
 }
 
 bool Candidates::rigid(const Pair& pair) const {
-    const std::vector<std::int32_t>& material = packing_.particles().material;
-    return kinetics_.any_rigid() &&
-           kinetics_.rigid(kinetics_.row(material[static_cast<std::size_t>(pair.i)], material[static_cast<std::size_t>(pair.j)]));
+    return kinetics_.any_rigid() && kinetics_.rigid(kinetics_.row(packing_.particles(), pair));
 }
 
 PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diffusion, double unit) const {
-    const std::vector<std::int32_t>& material = packing_.particles().material;
     const auto [first, second] = packing_.radii(pair);
-    const std::size_t kind = kinetics_.row(material[static_cast<std::size_t>(pair.i)], material[static_cast<std::size_t>(pair.j)]);
+    const std::size_t kind = kinetics_.row(packing_.particles(), pair);
     PairStep step{};
     step.vector = step.lever = packing_.vector(pair);
     step.distance = step.vector.norm();

@@ -72,7 +72,7 @@ ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, con
     if (overlap < 0.0) return result;
     const Vec3 normal = vector / distance;
     const Vec3 opening = velocity_[j] - velocity_[i] + strain_rate_.cwiseProduct(vector);
-    const std::size_t kind = kinetics_.row(packing_.particles().material[i], packing_.particles().material[j]);
+    const std::size_t kind = kinetics_.row(packing_.particles(), pair);
     const double reduced = physics::reduced_radius(first, second);
     result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * overlap * overlap / diffusion[kind];
     const double shear = physics::tangential_viscosity(settings_.constants, overlap, reduced) / diffusion[kind];
@@ -203,14 +203,14 @@ StepRecord ExplicitSintering::advance(double latest_time, double highest_density
     return record;
 }
 
-Json ExplicitSintering::numbers() const { return {{"strain_rate", {strain_rate_[0], strain_rate_[1], strain_rate_[2]}}}; }
+Json ExplicitSintering::numbers() const { return {{"strain_rate", triple(strain_rate_)}}; }
 
 std::vector<NamedArray> ExplicitSintering::arrays() const { return {{"velocity", {{packing_.size(), 3}, motion_over(1.0).displacement}}}; }
 
 void ExplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
     const std::vector<double> velocity = column_of(arrays, "velocity", packing_.size());
     for (std::size_t particle = 0; particle < packing_.size(); ++particle) velocity_[particle] = Eigen::Map<const Vec3>(&velocity[3 * particle]);
-    for (std::size_t axis = 0; axis < 3; ++axis) strain_rate_[static_cast<Eigen::Index>(axis)] = numbers.at("strain_rate").at(axis);
+    strain_rate_ = triple_from(numbers.at("strain_rate"));
     list_pairs();
 }
 

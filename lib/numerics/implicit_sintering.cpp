@@ -251,7 +251,7 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
 Json ImplicitSintering::numbers() const {
     return {{"last_rate", last_rate_},         {"rate_before", rate_before_},     {"last_closing", last_closing_},
             {"last_duration", last_duration_}, {"next_duration", next_duration_}, {"density_error", error_},
-            {"idle_steps", idle_steps_},       {"last_strain", {last_motion_.strain[0], last_motion_.strain[1], last_motion_.strain[2]}}};
+            {"idle_steps", idle_steps_},       {"last_strain", triple(last_motion_.strain)}};
 }
 
 std::vector<NamedArray> ImplicitSintering::arrays() const {
@@ -266,7 +266,7 @@ void ImplicitSintering::take_up(const Json& numbers, const std::vector<NamedArra
     next_duration_ = numbers.at("next_duration");
     error_ = numbers.at("density_error");
     idle_steps_ = numbers.at("idle_steps");
-    for (std::size_t axis = 0; axis < 3; ++axis) last_motion_.strain[static_cast<Eigen::Index>(axis)] = numbers.at("last_strain").at(axis);
+    last_motion_.strain = triple_from(numbers.at("last_strain"));
     last_motion_.displacement = column_of(arrays, "last_motion", packing_.size());
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/neighbours.h"
 #include "core/state.h"
 #include "physics/schedule.h"
 
@@ -19,6 +20,11 @@ class Kinetics {
 
     /// Row of a pair of materials in the tables.
     std::size_t row(std::int32_t a, std::int32_t b) const { return static_cast<std::size_t>(a) * materials_ + static_cast<std::size_t>(b); }
+
+    /// The same of the two particles of a pair.
+    std::size_t row(const Particles& particles, const Pair& pair) const {
+        return row(particles.material[static_cast<std::size_t>(pair.i)], particles.material[static_cast<std::size_t>(pair.j)]);
+    }
 
     double surface_energy(std::size_t row) const { return energy_[row]; }  // J/m2
 

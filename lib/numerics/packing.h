@@ -27,7 +27,6 @@ class Packing {
     double density() const { return density_; }        // relative, over the box
     const Vec3& strain() const { return strain_; }      // logarithmic, since the start
     double mean_radius() const { return mean_radius_; }  // m, that of the mean volume
-    double largest_radius() const { return largest_radius_; }
 
     /// Pairs whose gap is less than `closing` (m), and perhaps others; sorted.
     const std::vector<Pair>& pairs_within(double closing);

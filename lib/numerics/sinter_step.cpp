@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/contacts.h"
+#include "physics/sinter_contact.h"
 
 namespace kiln::numerics {
 
@@ -36,8 +37,7 @@ double touching_share(double start, double end) {
 /// Overlap at the end of the step of a pair that nothing else holds, under its share of the driving force, m.
 double alone(const PairStep& pair, double share) {
     if (!(pair.cubic > 0.0)) return 0.0;
-    const double start = std::max(0.0, pair.overlap);
-    return std::cbrt(start * start * start + 3.0 * share * pair.force / pair.cubic);
+    return physics::pair_overlap(pair.overlap, share * pair.force, 1.0, pair.cubic);
 }
 
 /// Resistance to closing from one overlap to another, both not negative: (K/I) times the integral of h^2.

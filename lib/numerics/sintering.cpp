@@ -22,8 +22,7 @@ State SinteringMethod::checkpoint() const {
     for (NamedArray& array : arrays()) state.particles.other.push_back(std::move(array));
     Json own = numbers();
     own["steps"] = steps_;
-    const Vec3& strain = packing_.strain();
-    own["strain"] = {strain[0], strain[1], strain[2]};
+    own["strain"] = triple(packing_.strain());
     state.other[key] = std::move(own);
     return state;
 }
@@ -35,9 +34,8 @@ void SinteringMethod::restore(const State& checkpoint) {
     const Json own = checkpoint.other.value(key, Json());
     if (!own.is_object()) throw Error("the checkpoint has no " + std::string(key));
     try {
-        Vec3 strain;
-        for (std::size_t axis = 0; axis < 3; ++axis) strain[static_cast<Eigen::Index>(axis)] = own.at("strain").at(axis);
-        packing_.restore(checkpoint.box, checkpoint.particles.position, checkpoint.time, checkpoint.temperature.value_or(0.0), strain);
+        packing_.restore(checkpoint.box, checkpoint.particles.position, checkpoint.time, checkpoint.temperature.value_or(0.0),
+                         triple_from(own.at("strain")));
         steps_ = own.at("steps");
         take_up(own, checkpoint.particles.other);
     } catch (const Json::exception& error) {

@@ -35,8 +35,7 @@ Contacts contacts_of(const Packing& packing, const Kinetics& kinetics, const phy
         bool turned = false;
         const Pair seen = clusters.seen(pair, turned);
         if (overlap < 0.0 || RigidClusters::inert(seen)) continue;
-        const auto& material = packing.particles().material;
-        const std::size_t kind = kinetics.row(material[static_cast<std::size_t>(pair.i)], material[static_cast<std::size_t>(pair.j)]);
+        const std::size_t kind = kinetics.row(packing.particles(), pair);
         if (kinetics.rigid(kind)) continue;
         const double reduced = physics::reduced_radius(first, second), aged = std::max(overlap, least_overlap * reduced);
         contacts.pairs.push_back(seen);
@@ -66,8 +65,7 @@ std::vector<Pair> sticking_pairs(const Packing& packing, const Kinetics& kinetic
     std::vector<Pair> sticking;
     for (const Pair& pair : packing.pairs()) {
         const auto [first, second] = packing.radii(pair);
-        const auto& material = packing.particles().material;
-        const std::size_t kind = kinetics.row(material[static_cast<std::size_t>(pair.i)], material[static_cast<std::size_t>(pair.j)]);
+        const std::size_t kind = kinetics.row(packing.particles(), pair);
         if (kinetics.rigid(kind) && packing.vector(pair).norm() <= first + second) sticking.push_back(pair);
     }
     return sticking;

@@ -42,7 +42,6 @@ std::optional<Progressed> Checkpoint::read() {
             throw Error(file_ + ": is of a run with other options, " + own.at("arguments").dump() + "; delete it to begin anew");
         return Progressed{.document = own.at("document"),
                           .fingerprint = own.at("fingerprint"),
-                          .arguments = own.at("arguments"),
                           .output_bytes = own.at("output_bytes"),
                           .history_bytes = own.at("history_bytes"),
                           .newton = own.at("newton"),

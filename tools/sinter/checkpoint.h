@@ -14,7 +14,6 @@ namespace kiln::sinter {
 struct Progressed {
     std::size_t document = 0;          // of the input, from 0
     std::string fingerprint;           // of that document as it was read
-    Json arguments;                    // options that bear on the result
     std::uint64_t output_bytes = 0, history_bytes = 0;
     int newton = 0, conjugate_gradients = 0;
     bool converged = true;

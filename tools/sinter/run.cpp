@@ -20,7 +20,7 @@ constexpr double validity_limit = 0.9;  // relative density above which grain gr
 constexpr double full_density = 1.0;    // that no body passes
 constexpr double same_density = 1e-6;   // relative
 
-Json triple(const Vec3& vector) { return {vector[0], vector[1], vector[2]}; }
+using numerics::triple;
 
 Json summary_of(const numerics::StepRecord& record, const std::string& method) {
     Json summary{{"method", method},
@@ -149,7 +149,7 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
     for (auto state = input.next_state(); state; state = input.next_state(), ++document) {
         if (earlier && document < earlier->document) continue;
         const bool taken_up = earlier && document == earlier->document;
-        Progressed progressed = taken_up ? *earlier : Progressed{.document = document, .fingerprint = "", .arguments = {}, .converged = converged};
+        Progressed progressed = taken_up ? *earlier : Progressed{.document = document, .fingerprint = "", .converged = converged};
         if (sinks.checkpoint.wanted()) progressed.fingerprint = fingerprint(*state);
         if (taken_up && progressed.fingerprint != earlier->fingerprint)
             throw Error("the checkpoint is of another input than document " + std::to_string(document + 1));
