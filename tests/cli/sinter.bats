@@ -96,6 +96,13 @@ END
     assert_output 0
 }
 
+@test "a checkpoint that was broken off while it was written is written over, and gone in the end" {
+    echo "half a checkpoint" >run.kiln.partial
+    "$SINTER" --temperature 1200C --to-density 0.6 --checkpoint run.kiln --checkpoint-every 0s --resume -o out.kiln green.kiln
+    run -0 bash -c 'echo run.kiln*'
+    assert_output 'run.kiln*'
+}
+
 @test "SIGTERM with a checkpoint keeps the run; a checkpoint of other options or another input is refused" {
     "$SINTER" green -n 1500 --density 0.43 --seed 5 -o large.kiln
     options=(--temperature 1200C --checkpoint run.kiln --checkpoint-every 0s -o out.kiln)
