@@ -116,7 +116,7 @@ void Output::create_partial() {
 void Output::open_partial(const Resumption& resumption) {
     partial_ = final_ + ".partial";
     file_ = std::fopen(partial_.c_str(), resumption.take_up ? "r+be" : "wbxe");
-    keep_ = file_ && resumption.take_up && resumption.bytes > 0;
+    keep_ = file_ && resumption.take_up;
     if (!file_ && resumption.take_up && errno == ENOENT && resumption.bytes == 0) file_ = std::fopen(partial_.c_str(), "wbxe");
     const std::string partial = file_ ? partial_ : std::exchange(partial_, std::string());
     if (!file_ && errno == EEXIST)
