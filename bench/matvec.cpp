@@ -71,32 +71,33 @@ int main(int argc, char** argv) {
     Box box;
     const std::vector<Vec3> position = packing(edge, box);
     const std::vector<Pair> pairs = find_pairs(box, position, std::vector<double>(position.size(), 0.76));
-    numerics::ContactNetwork network(box, position, pairs);
+    const numerics::ContactNetwork network(box, position, pairs);
+    numerics::Stiffness stiffness(network);
     std::vector<Vec3> levers;
     for (const Pair& pair : pairs) levers.push_back(pair_vector(box, position, pair));
     for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
         const Vec3 normal = levers[static_cast<std::size_t>(network.pair[entry])].normalized();
-        network.nx[entry] = static_cast<float>(normal[0]);
-        network.ny[entry] = static_cast<float>(normal[1]);
-        network.nz[entry] = static_cast<float>(normal[2]);
-        network.normal[entry] = 1.0F;
-        network.tangential[entry] = 0.1F;
+        stiffness.set_direction(entry, normal);
+        stiffness.set(entry, 1.0, 0.1);
     }
-    numerics::Motion in(position.size()), out(position.size());
-    for (std::size_t k = 0; k < in.displacement.size(); ++k) in.displacement[k] = static_cast<double>(k % 17);
-    std::vector<double> total(3 * position.size());
+    numerics::QuadMotion in(position.size()), out(position.size());
+    for (std::size_t row = 0; row < position.size(); ++row)
+        in.displacement[row] = numerics::quad(static_cast<double>(row % 17), static_cast<double>(row % 5), 1.0);
+    std::vector<numerics::Quad> total(position.size());
     const auto particles = static_cast<double>(position.size()), entries = static_cast<double>(network.first.size());
 
     triad(static_cast<std::size_t>(particles) * 32);
-    // An entry is 28 bytes; a particle's displacement, position, sum and total come once each: 4 x 24 bytes, and total again.
-    say("matvec", 28.0 * entries + 120.0 * particles,
-        best_seconds([&] { network.gather(in, out, total, numerics::StiffnessForce{network}); }));
+    // An entry is 28 bytes; a particle's displacement, position, force and total come once each, and the total is written before: 5 x 16.
+    say("matvec", 28.0 * entries + 80.0 * particles, best_seconds([&] {
+            network.for_chunks([&](std::size_t chunk) { stiffness.displace(chunk, in, total); });
+            network.for_chunks([&](std::size_t chunk) { stiffness.multiply(chunk, in.strain, total, out); });
+        }));
     numerics::Preconditioner preconditioner(network);
-    preconditioner.factorise(network, levers);
-    // Twice a block of 36 bytes and its column for each contact inside a chunk; 72 bytes of the diagonal, residual and result.
+    preconditioner.factorise(stiffness, levers);
+    // Twice a block of 36 bytes and its column for each contact inside a chunk; 36 bytes of the diagonal, residual and result.
     double inside = 0.0;
     for (const auto& chunk : network.chunks()) inside += static_cast<double>(chunk.first_only - chunk.begin);
-    say("preconditioner", 80.0 * inside + 168.0 * particles, best_seconds([&] {
-            network.for_chunks([&](std::size_t chunk) { preconditioner.apply(network, chunk, in, out); });
+    say("preconditioner", 80.0 * inside + 132.0 * particles, best_seconds([&] {
+            network.for_chunks([&](std::size_t chunk) { preconditioner.apply(network.chunks()[chunk], in, out); });
         }));
 }

@@ -10,8 +10,8 @@ namespace kiln::numerics {
 
 namespace {
 
-constexpr double least_reach = 0.01;   // of the mean radius, that candidates for touch may be apart
-constexpr double guess_margin = 1.3;   // of the closing that is guessed, that makes a candidate
+constexpr double least_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
+constexpr double guess_margin = 2.0;   // of the closing that is guessed, that makes a candidate
 constexpr double harmless_overlap = 0.05;  // of the mean closing of contacts in a step, that a pair left out may reach
 constexpr double sticking_gap = 1e-6;  // of the reduced radius, between rigid particles that touch
 
@@ -59,7 +59,11 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     const double radius = packing_.mean_radius();
     unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
             (physics::normal_viscosity_factor(constants_, 0.5 * radius) * radius * radius);
+    lists_ = packing_.lists();
     const double reach = least_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
+    const auto expected = [&](const Pair& pair) {
+        return &guess == &other ? end_overlap(pair, guess) : std::max(end_overlap(pair, guess), end_overlap(pair, other));
+    };
     const std::vector<Pair>& list = packing_.pairs();
     std::vector<std::uint8_t> kind(list.size());  // 0 out, 1 apart, 2 touching, 3 sticking
 #pragma omp parallel for schedule(static)
@@ -72,13 +76,13 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
         else if (start >= 0.0)
             kind[row] = 2;
         else if (start + reach > 0.0 ||
-                 start + guess_margin * (std::max(end_overlap(pair, guess), end_overlap(pair, other)) - start) + reach > 0.0)
+                 start + guess_margin * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;
     }
-    for (auto* part : {&pairs_, &chosen_, &touching_, &sticking_}) part->clear();
+    for (auto* part : {&pairs_, &chosen_, &left_out_, &touching_, &sticking_}) part->clear();
     for (std::size_t row = 0; row < list.size(); ++row) {
+        (kind[row] == 0 ? left_out_ : chosen_).push_back(list[row]);
         if (kind[row] == 0) continue;
-        chosen_.push_back(list[row]);
         if (kind[row] >= 2) touching_.push_back(list[row]);
         (kind[row] == 3 ? sticking_ : pairs_).push_back(list[row]);
     }
@@ -95,7 +99,8 @@ bool Candidates::complete(const Motion& motion) const {
         for (std::size_t row = 0; row < pairs.size(); ++row) count += end_overlap(pairs[row], motion) > harmless;
         return count;
     };
-    return touching_among(packing_.pairs()) == touching_among(chosen_);  // the list, perhaps a longer one by now, holds the chosen
+    if (lists_ == packing_.lists()) return touching_among(left_out_) == 0;
+    return touching_among(packing_.pairs()) == touching_among(chosen_);  // a new list holds the chosen as well
 }
 
 void Candidates::turn_to_nodes(const RigidClusters& clusters) {

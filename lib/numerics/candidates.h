@@ -45,7 +45,8 @@ class Candidates {
     const Packing& packing_;
     const Kinetics& kinetics_;
     physics::ContactConstants constants_;
-    std::vector<Pair> pairs_, chosen_, touching_, sticking_;
+    std::vector<Pair> pairs_, chosen_, left_out_, touching_, sticking_;
+    int lists_ = 0;  // of the packing, when pairs were chosen
     std::vector<PairStep> steps_;
     double unit_ = 1.0;
 };

@@ -18,6 +18,14 @@ Range components(const ContactNetwork& network, std::size_t chunk) {
     return {3 * c.first_particle, 3 * c.last_particle};
 }
 
+/// Sum of the products of a chunk's displacements.
+double dot(const ContactNetwork::Chunk& chunk, const QuadMotion& a, const QuadMotion& b) {
+    WideQuad sums;
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
+        add_product(a.displacement[row], b.displacement[row], sums);
+    return sums.sum();
+}
+
 }  // namespace
 
 double dot(const ContactNetwork& network, const Motion& a, const Motion& b) {
@@ -38,71 +46,77 @@ void add(const ContactNetwork& network, double factor, const Motion& x, Motion& 
 }
 
 ConjugateGradients::ConjugateGradients(std::size_t particles)
-    : r_(particles), z_(particles), p_(particles), q_(particles), total_(3 * particles) {}
+    : x_(particles), r_(particles), z_(particles), p_(particles), q_(particles), total_(particles) {}
 
-LinearSolve ConjugateGradients::solve(const ContactNetwork& network, const Preconditioner& preconditioner,
-                                      const Eigen::Matrix3d& allowed, const Motion& b, Motion& x, const LinearGoal& goal) {
-    std::fill(x.displacement.begin(), x.displacement.end(), 0.0);
-    x.strain.setZero();
-    std::fill(p_.displacement.begin(), p_.displacement.end(), 0.0);
-    p_.strain.setZero();
-    r_ = b;
+double ConjugateGradients::advance(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
+                                   double step) {
+    const ContactNetwork& network = stiffness.network();
+    x_.strain += step * p_.strain;
+    r_.strain -= step * q_.strain;
+    preconditioner.apply_strain(r_, z_);
+    project(z_, allowed);
+    const auto length = static_cast<float>(step);
+    return r_.strain.dot(z_.strain) + network.sum_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network.chunks()[index];
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
+            x_.displacement[row] += length * p_.displacement[row];
+            r_.displacement[row] -= length * q_.displacement[row];
+        }
+        preconditioner.apply(chunk, r_, z_);
+        return dot(chunk, r_, z_);
+    });
+}
+
+double ConjugateGradients::turn(const Stiffness& stiffness, const Eigen::Matrix3d& allowed, double ratio) {
+    const ContactNetwork& network = stiffness.network();
+    p_.strain = z_.strain + ratio * p_.strain;
+    const auto kept = static_cast<float>(ratio);
+    network.for_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network.chunks()[index];
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
+            p_.displacement[row] = z_.displacement[row] + kept * p_.displacement[row];
+        stiffness.displace(index, p_, total_);
+    });
+    work_.resize(network.chunks().size());
+    const double curvature = network.sum_chunks([&](std::size_t index) {
+        work_[index] = stiffness.multiply(index, p_.strain, total_, q_);
+        return dot(network.chunks()[index], p_, q_);
+    });
+    q_.strain.setZero();
+    for (const Vec3& part : work_) q_.strain += part;
+    project(q_, allowed);
+    return curvature + p_.strain.dot(q_.strain);
+}
+
+LinearSolve ConjugateGradients::solve(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
+                                      const Motion& b, Motion& x, const LinearGoal& goal) {
+    for (QuadMotion* motion : {&x_, &p_, &q_}) {
+        std::fill(motion->displacement.begin(), motion->displacement.end(), Quad{});
+        motion->strain.setZero();
+    }
+    for (std::size_t row = 0; row < r_.displacement.size(); ++row)
+        r_.displacement[row] = quad(b.displacement[3 * row], b.displacement[3 * row + 1], b.displacement[3 * row + 2]);
+    r_.strain = b.strain;
     project(r_, allowed);
-    // Subtracts step * q from r, adds step * p to x, preconditions; gives the product of r and z.
-    const auto advance = [&](double step) {
-        x.strain += step * p_.strain;
-        r_.strain -= step * q_.strain;
-        preconditioner.apply_strain(r_, z_);
-        project(z_, allowed);
-        return r_.strain.dot(z_.strain) + network.sum_chunks([&](std::size_t chunk) {
-            const Range range = components(network, chunk);
-            if (step != 0.0)
-                for (std::size_t k = range.first; k < range.last; ++k) {
-                    x.displacement[k] += step * p_.displacement[k];
-                    r_.displacement[k] -= step * q_.displacement[k];
-                }
-            preconditioner.apply(network, chunk, r_, z_);
-            double sum = 0.0;
-            for (std::size_t k = range.first; k < range.last; ++k) sum += r_.displacement[k] * z_.displacement[k];
-            return sum;
-        });
-    };
-    // The next direction p = z + ratio * p, and q = K p; gives the product of p and q.
-    std::vector<Vec3> work(network.chunks().size());
-    const auto stiffness_along = [&](double ratio) {
-        p_.strain = z_.strain + ratio * p_.strain;
-        network.for_chunks([&](std::size_t chunk) {
-            const Range range = components(network, chunk);
-            for (std::size_t k = range.first; k < range.last; ++k) p_.displacement[k] = z_.displacement[k] + ratio * p_.displacement[k];
-            network.displace(chunk, p_, total_);
-        });
-        const double curvature = network.sum_chunks([&](std::size_t chunk) {
-            work[chunk] = network.gather_chunk(chunk, p_.strain, total_, q_, StiffnessForce{network});
-            const Range range = components(network, chunk);
-            double sum = 0.0;
-            for (std::size_t k = range.first; k < range.last; ++k) sum += p_.displacement[k] * q_.displacement[k];
-            return sum;
-        });
-        q_.strain.setZero();
-        for (const Vec3& part : work) q_.strain += part;
-        project(q_, allowed);
-        return curvature + p_.strain.dot(q_.strain);
-    };
 
-    const double start = advance(0.0);
+    const double start = advance(stiffness, preconditioner, allowed, 0.0);
     const double relative = goal.scale > 0.0 ? std::clamp(std::sqrt(start / goal.scale), goal.tightest, goal.loosest) : goal.tightest;
     const double wanted = std::max(relative * relative * start, goal.enough);
     double product = start, ratio = 0.0;
     LinearSolve report{.start = start};
     while (product > wanted && report.iterations < goal.most_iterations) {
-        const double curvature = stiffness_along(ratio);
+        const double curvature = turn(stiffness, allowed, ratio);
         if (!(curvature > 0.0)) break;  // only motion that costs nothing is left
-        const double next = advance(product / curvature);
+        const double next = advance(stiffness, preconditioner, allowed, product / curvature);
         ratio = next / product;
         product = next;
         ++report.iterations;
     }
     report.residual = start > 0.0 ? std::sqrt(product / start) : 0.0;
+    for (std::size_t row = 0; row < x_.displacement.size(); ++row)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            x.displacement[3 * row + axis] = static_cast<double>(x_.displacement[row].lanes[axis]);
+    x.strain = x_.strain;
     return report;
 }
 

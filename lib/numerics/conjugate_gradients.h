@@ -1,7 +1,6 @@
 // conjugate_gradients.h: preconditioned conjugate gradients for the stiffness of a contact network with the box's strains.
 #pragma once
 
-#include "numerics/contact_network.h"
 #include "numerics/preconditioner.h"
 
 namespace kiln::numerics {
@@ -21,7 +20,8 @@ struct LinearGoal {
     int most_iterations = 5000;
 };
 
-/// Solves K x = b from x = 0 until the goal is met.
+/// Solves K x = b from x = 0 until the goal is met. The iteration is in single precision: goals below 1e-5 or so are for the caller to
+/// reach, by solving again for what is left of b.
 ///
 /// A singular K (particles without contacts, clusters that hang on nothing) is allowed as long as b does no work on its null space.
 /// allowed: projector onto the strains that the box may take. Work vectors are kept between calls.
@@ -29,12 +29,18 @@ class ConjugateGradients {
    public:
     explicit ConjugateGradients(std::size_t particles);
 
-    LinearSolve solve(const ContactNetwork& network, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
-                      const Motion& b, Motion& x, const LinearGoal& goal);
+    LinearSolve solve(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed, const Motion& b,
+                      Motion& x, const LinearGoal& goal);
 
    private:
-    Motion r_, z_, p_, q_;
-    std::vector<double> total_;
+    /// Takes step * p off what is left, and gives the product of what is left, r, and its preconditioned z.
+    double advance(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed, double step);
+    /// The next direction p = z + ratio * p, and q = K p; gives their product.
+    double turn(const Stiffness& stiffness, const Eigen::Matrix3d& allowed, double ratio);
+
+    QuadMotion x_, r_, z_, p_, q_;
+    std::vector<Quad> total_;
+    std::vector<Vec3> work_;
 };
 
 /// Sum of the products of all components, particle by particle in chunks, strains last.
@@ -44,6 +50,7 @@ double dot(const ContactNetwork& network, const Motion& a, const Motion& b);
 void add(const ContactNetwork& network, double factor, const Motion& x, Motion& y);
 
 /// Takes away the part of the strains that is not allowed.
-inline void project(Motion& motion, const Eigen::Matrix3d& allowed) { motion.strain = allowed * motion.strain; }
+template <typename AnyMotion>
+void project(AnyMotion& motion, const Eigen::Matrix3d& allowed) { motion.strain = allowed * motion.strain; }
 
 }  // namespace kiln::numerics

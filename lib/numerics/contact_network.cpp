@@ -45,7 +45,6 @@ ContactNetwork::ContactNetwork(const Box& box, std::span<const Vec3> position, s
         chunks_.push_back(chunk);
     }
     for (auto* column : {&first, &second, &pair}) column->resize(total);
-    for (auto* column : {&nx, &ny, &nz, &normal, &tangential}) column->resize(total);
     shift_.resize(shifts);
     side_.resize(shifts);
     for_entries([&](std::size_t row, std::size_t index, Kind kind) {

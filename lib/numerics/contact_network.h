@@ -37,6 +37,7 @@ class ContactNetwork {
     ContactNetwork(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs);
 
     std::size_t particles() const { return position_.size(); }
+    const Vec3& position(std::size_t row) const { return position_[row]; }
     const std::vector<Chunk>& chunks() const { return chunks_; }
 
     /// Calls work(chunk number) for each chunk, in parallel.
@@ -62,33 +63,34 @@ class ContactNetwork {
     template <typename Force>
     void gather(const Motion& motion, Motion& forces, std::vector<double>& total, const Force& force) const;
 
-    /// The first half of gather for one chunk: its particles' total displacements u + e*x.
-    void displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const;
-
-    /// The second half for one chunk, once all chunks are displaced; gives the chunk's part of forces.strain.
-    template <typename Force>
-    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<double>& total, Motion& forces, const Force& force) const;
-
     /// Calls visit(entry) once for each contact of a chunk that it owns, so that all chunks together visit every contact once.
     template <typename Visit>
     void for_owned(std::size_t chunk, const Visit& visit) const {
         const Chunk& c = chunks_[chunk];
         for (std::size_t entry = c.begin; entry < c.second_only; ++entry) visit(entry);
         for (std::size_t entry = c.crossing; entry < c.end; ++entry)
-            if (side_[c.shift_begin + entry - c.crossing] & own_first) visit(entry);
+            if (owns_first(c, entry)) visit(entry);
     }
 
     std::vector<std::int32_t> first, second;    // particles i and j of each entry
     std::vector<std::int32_t> pair;             // row of the entry in the list of pairs
-    // Single precision halves the memory traffic; Newton's iteration corrects what it leaves out.
-    std::vector<float> nx, ny, nz;           // unit vector from i to j
-    std::vector<float> normal, tangential;   // stiffness of the entry, in any one unit
+
+    /// Of a crossing entry: its shift, m, and whether the chunk owns its first and its second particle.
+    const Vec3& shift(const Chunk& chunk, std::size_t entry) const { return shift_[chunk.shift_begin + entry - chunk.crossing]; }
+    bool owns_first(const Chunk& chunk, std::size_t entry) const { return owns(chunk, entry, own_first); }
+    bool owns_second(const Chunk& chunk, std::size_t entry) const { return owns(chunk, entry, own_second); }
 
    private:
     static constexpr std::int64_t fewest_parallel = 5;  // chunks; below, threads wait for each other longer than they work
     static constexpr std::uint8_t own_first = 1, own_second = 2;
+    bool owns(const Chunk& chunk, std::size_t entry, std::uint8_t which) const {
+        return (side_[chunk.shift_begin + entry - chunk.crossing] & which) != 0;
+    }
     template <bool AddFirst, bool AddSecond, typename Force>
     void gather_range(std::size_t begin, std::size_t end, const double* total, double* forces, const Force& force) const;
+    void displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const;
+    template <typename Force>
+    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<double>& total, Motion& forces, const Force& force) const;
     template <typename Force>
     Vec3 gather_crossing(const Chunk& chunk, const Vec3& strain, const double* total, double* forces, const Force& force) const;
 
@@ -96,16 +98,6 @@ class ContactNetwork {
     std::vector<Chunk> chunks_;
     std::vector<Vec3> shift_;         // m, of crossing entries
     std::vector<std::uint8_t> side_;  // which particles of a crossing entry are the chunk's own
-};
-
-/// Force of an entry's stiffness on a relative motion: [kt I + (kn - kt) n n^T] du.
-struct StiffnessForce {
-    const ContactNetwork& network;
-    Vec3 operator()(std::size_t entry, const Vec3& du) const {
-        const double x = network.nx[entry], y = network.ny[entry], z = network.nz[entry], shear = network.tangential[entry];
-        const double along = (network.normal[entry] - shear) * (x * du[0] + y * du[1] + z * du[2]);
-        return {shear * du[0] + along * x, shear * du[1] + along * y, shear * du[2] + along * z};
-    }
 };
 
 template <bool AddFirst, bool AddSecond, typename Force>
@@ -126,16 +118,15 @@ Vec3 ContactNetwork::gather_crossing(const Chunk& chunk, const Vec3& strain, con
                                      const Force& force) const {
     Vec3 work = Vec3::Zero();
     for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
-        const std::size_t slot = chunk.shift_begin + entry - chunk.crossing;
         const std::size_t i = 3 * static_cast<std::size_t>(first[entry]), j = 3 * static_cast<std::size_t>(second[entry]);
         const Vec3 du = Vec3(total[j] - total[i], total[j + 1] - total[i + 1], total[j + 2] - total[i + 2]) +
-                        strain.cwiseProduct(shift_[slot]);
+                        strain.cwiseProduct(shift(chunk, entry));
         const Vec3 f = force(entry, du);
-        if (side_[slot] & own_first) {
-            work += f.cwiseProduct(shift_[slot]);
+        if (owns_first(chunk, entry)) {
+            work += f.cwiseProduct(shift(chunk, entry));
             for (std::size_t axis = 0; axis < 3; ++axis) forces[i + axis] -= f[static_cast<Eigen::Index>(axis)];
         }
-        if (side_[slot] & own_second)
+        if (owns_second(chunk, entry))
             for (std::size_t axis = 0; axis < 3; ++axis) forces[j + axis] += f[static_cast<Eigen::Index>(axis)];
     }
     return work;

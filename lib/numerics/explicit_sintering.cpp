@@ -41,7 +41,8 @@ ExplicitSintering::ExplicitSintering(State state, const SinteringSettings& setti
 }
 
 void ExplicitSintering::list_pairs() {
-    pairs_ = packing_.pairs_within(list_margin * packing_.mean_radius());
+    packing_.list_pairs(0.5 * list_margin * packing_.mean_radius());
+    pairs_ = packing_.pairs();
     force_.resize(pairs_.size());
     begin_.assign(packing_.size() + 1, 0);
     first_row_.assign(packing_.size() + 1, 0);
@@ -163,7 +164,7 @@ double ExplicitSintering::shortened(double step, double log_change) const {
 }
 
 void ExplicitSintering::step_once(double latest_time, double highest_density, StepRecord& record) {
-    if (packing_.margin() < 2.0 * largest_closing * packing_.mean_radius()) list_pairs();
+    if (packing_.least_room() < largest_closing * packing_.mean_radius()) list_pairs();
     const double now = packing_.time();
     const BoxForce box = find_forces(kinetics_.diffusion_at(kinetics_.schedule().temperature(now)));
     double step = stable_step(box);
@@ -180,7 +181,7 @@ void ExplicitSintering::step_once(double latest_time, double highest_density, St
         until = now + step;
     }
     record.stress = box.force / packing_.box().volume();
-    packing_.apply(motion, until, kinetics_.schedule().temperature(until), packing_.closing_bound(motion));
+    packing_.apply(motion, until, kinetics_.schedule().temperature(until));
 }
 
 StepRecord ExplicitSintering::advance(double latest_time, double highest_density) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double largest_closing = 1.0;     // of the mean radius, of any gap in a step
 constexpr double largest_log_step = 0.05;   // of the density
+constexpr double guess_margin = 1.2;        // of the motion that is guessed, that pairs are listed for
 constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
@@ -76,7 +77,7 @@ Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& loc
     return columns * (columns.transpose() * columns).ldlt().solve(columns.transpose());
 }
 
-Motion ImplicitSintering::guess_from(const Motion& motion, double factor) const {
+Motion ImplicitSintering::scaled(const Motion& motion, double factor) const {
     Motion guess(packing_.size());
     if (motion.displacement.size() != guess.displacement.size()) return guess;
     for (std::size_t k = 0; k < guess.displacement.size(); ++k) guess.displacement[k] = factor * motion.displacement[k];
@@ -84,52 +85,51 @@ Motion ImplicitSintering::guess_from(const Motion& motion, double factor) const 
     return guess;
 }
 
-Motion ImplicitSintering::solve(const Motion* first, const Motion& guess, const RigidClusters& clusters, const StepSettings& settings,
-                                StepReport& report) {
-    candidates_.turn_to_nodes(clusters);
-    SinterStep solver(packing_.box(), clusters.places(), candidates_.pairs(), settings);
-    Motion motion = clusters.nodes(guess);
-    project(motion, settings.allowed_strain);
-    report = first ? solver.second_order(candidates_.steps(), clusters.nodes(*first), motion)
-                   : solver.first_order(candidates_.steps(), motion);
-    for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
-        report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
-    newton_ += report.newton;
-    conjugate_gradients_ += report.conjugate_gradients;
-    return clusters.particles(motion, packing_.particles().position);
+void ImplicitSintering::Problem::take(const Packing& packing, Candidates& candidates) {
+    candidates.turn_to_nodes(clusters);
+    step.emplace(packing.box(), clusters.places(), candidates.pairs(), settings);
 }
 
-ImplicitSintering::Trial ImplicitSintering::attempt(double duration, double until, const Motion& guess) {
-    const double radius = packing_.mean_radius(), longest = last_duration_ > 0.0 ? std::max(1.0, duration / last_duration_) : 1.0;
-    packing_.pairs_within(std::min(1.2 * last_closing_ * longest, largest_closing * radius));
+void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
+    Motion& motion = second ? trial.motion : trial.first_order;
+    for (;;) {  // until no pair that comes to touch was left out
+        Motion nodes = problem.clusters.nodes(motion);
+        project(nodes, problem.settings.allowed_strain);
+        trial.report = second ? problem.step->second_order(candidates_.steps(), problem.clusters.nodes(trial.first_order), nodes)
+                              : problem.step->first_order(candidates_.steps(), nodes);
+        trial.converged = trial.converged && trial.report.converged;
+        newton_ += trial.report.newton;
+        conjugate_gradients_ += trial.report.conjugate_gradients;
+        motion = problem.clusters.particles(nodes, packing_.particles().position);
+        trial.leapt = packing_.closing_bound(motion) > largest_closing * packing_.mean_radius();
+        if (trial.leapt) return;  // no list of pairs is made for such a leap: the step is too long
+        packing_.cover(motion);
+        if (candidates_.complete(motion)) return;
+        candidates_.choose(trial.first_order, trial.motion, problem.diffusion);
+        problem.take(packing_, candidates_);
+    }
+}
+
+ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& guess) {
+    packing_.cover(guess, guess_margin);
     ++attempts_;
     const std::vector<double> diffusion = kinetics_.diffusion_over(packing_.time(), until);
-    Trial trial;
-    trial.until = until;
-    trial.motion = guess;
     candidates_.choose(guess, guess, diffusion);
     const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
     const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .solver_tolerance = settings_.solver_tolerance * (packing_.size() < small_packing ? small_share : 1.0)};
-    const auto solve_all = [&](const Motion* first) {  // until no pair that comes to touch was left out
-        for (bool again = first != nullptr;; again = true) {
-            if (again) candidates_.choose(trial.motion, first ? *first : guess, diffusion);
-            StepReport report;
-            trial.motion = solve(first, trial.motion, clusters, settings, report);
-            trial.report.converged = trial.report.converged && report.converged;
-            trial.report.stress = report.stress;
-            trial.closing = packing_.closing_bound(trial.motion);
-            trial.leapt = trial.closing > largest_closing * radius;  // no list of pairs is made for such a leap: the step is too long
-            if (trial.leapt) return;
-            packing_.pairs_within(trial.closing);
-            if (candidates_.complete(trial.motion)) return;
-        }
-    };
-    solve_all(nullptr);
-    trial.first_order = trial.motion;
-    if (settings_.second_order && !trial.leapt) solve_all(&trial.first_order);
+    Problem problem{diffusion, clusters, settings, std::nullopt};
+    problem.take(packing_, candidates_);
+    Trial trial;
+    trial.until = until;
+    trial.motion = trial.first_order = guess;
+    solve(problem, false, trial);
+    trial.motion = trial.first_order;
+    if (settings_.second_order && !trial.leapt) solve(problem, true, trial);
     if (trial.leapt) return trial;
+    for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
+        trial.report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
     trial.log_density = packing_.log_density_change(trial.motion);
     trial.first_log_density = packing_.log_density_change(trial.first_order);
     return trial;
@@ -142,7 +142,7 @@ ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& d
     double before = duration, before_change = beyond.log_density, here = parabola(log_change, duration, beyond.log_density);
     Trial trial = beyond;
     for (int iteration = 0; iteration < most_landings; ++iteration) {
-        trial = attempt(here, kinetics_.after(packing_.time(), here), guess_from(trial.motion, log_change / trial.log_density));
+        trial = attempt(kinetics_.after(packing_.time(), here), scaled(trial.motion, log_change / trial.log_density));
         const double miss = trial.log_density - log_change, rate = (trial.log_density - before_change) / (here - before);
         const double next = here - miss / rate;
         (miss > 0.0 ? high : low) = here;
@@ -151,7 +151,7 @@ ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& d
         if (std::abs(miss) <= landing_closeness * log_change) break;
     }
     for (int pass = 0; pass < 3; ++pass) {  // the logarithm of the density is nearly linear in the motion
-        trial.motion = guess_from(trial.motion, log_change / trial.log_density);
+        trial.motion = scaled(trial.motion, log_change / trial.log_density);
         trial.log_density = packing_.log_density_change(trial.motion);
     }
     duration = here;
@@ -176,14 +176,14 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
     double until = ends_on_time ? latest_time : kinetics_.after(packing_.time(), duration);
     const double wanted_error = settings_.tolerance / (third_order_factor * typical_log_range);
     const double slowing = rate_before_ > 0.0 && last_rate_ > 0.0 ? std::clamp(last_rate_ / rate_before_, 0.5, 1.0) : 1.0;
-    Motion guess = guess_from(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
+    Motion guess = scaled(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
     Trial trial;
     double difference = 0.0;
     for (int rejected = 0;; ++rejected) {
-        trial = attempt(duration, until, guess);
+        trial = attempt(until, guess);
         difference = std::abs(trial.log_density - trial.first_log_density);
         if (!trial.leapt && difference <= 2.0 * wanted_error && std::abs(trial.log_density) <= largest_log_step &&
-            trial.report.converged)
+            trial.converged)
             break;
         if (rejected == most_rejections) {
             if (trial.leapt)
@@ -191,7 +191,7 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
             break;  // the record says that it did not converge
         }
         const double factor = std::clamp(0.8 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.2, 0.7);
-        guess = trial.leapt ? Motion(packing_.size()) : guess_from(trial.motion, factor);
+        guess = trial.leapt ? Motion(packing_.size()) : scaled(trial.motion, factor);
         duration *= factor;
         until = kinetics_.after(packing_.time(), duration);
     }
@@ -224,12 +224,11 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
 }
 
 StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
-    packing_.apply(trial.motion, trial.until, kinetics_.schedule().temperature(trial.until), trial.closing);
+    packing_.apply(trial.motion, trial.until, kinetics_.schedule().temperature(trial.until));
     ++steps_;
     if (duration > 0.0) {
         last_motion_ = trial.motion;
         rate_before_ = std::exchange(last_rate_, trial.log_density / duration);
-        last_closing_ = trial.closing;
         last_duration_ = duration;
     }
     error_ += third_order_factor * std::abs(trial.log_density - trial.first_log_density) * std::abs(trial.log_density);
@@ -244,24 +243,23 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
     record.attempts = std::exchange(attempts_, 0);
     record.newton = std::exchange(newton_, 0);
     record.conjugate_gradients = std::exchange(conjugate_gradients_, 0);
-    record.converged = trial.report.converged;
+    record.converged = trial.converged;
     return record;
 }
 
 Json ImplicitSintering::numbers() const {
-    return {{"last_rate", last_rate_},         {"rate_before", rate_before_},     {"last_closing", last_closing_},
+    return {{"last_rate", last_rate_},         {"rate_before", rate_before_},
             {"last_duration", last_duration_}, {"next_duration", next_duration_}, {"density_error", error_},
             {"idle_steps", idle_steps_},       {"last_strain", triple(last_motion_.strain)}};
 }
 
 std::vector<NamedArray> ImplicitSintering::arrays() const {
-    return {{"last_motion", {{packing_.size(), 3}, guess_from(last_motion_, 1.0).displacement}}};
+    return {{"last_motion", {{packing_.size(), 3}, scaled(last_motion_, 1.0).displacement}}};
 }
 
 void ImplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
     last_rate_ = numbers.at("last_rate");
     rate_before_ = numbers.at("rate_before");
-    last_closing_ = numbers.at("last_closing");
     last_duration_ = numbers.at("last_duration");
     next_duration_ = numbers.at("next_duration");
     error_ = numbers.at("density_error");

@@ -1,6 +1,8 @@
 // implicit_sintering.h: overdamped sintering in implicit steps, with step control and exact landing on wanted times and densities.
 #pragma once
 
+#include <optional>
+
 #include "numerics/candidates.h"
 #include "numerics/sintering.h"
 
@@ -20,27 +22,34 @@ class ImplicitSintering : public SinteringMethod {
     /// A trial step and what it led to.
     struct Trial {
         Motion motion, first_order;
-        StepReport report;
+        StepReport report;  // of the last solution
+        bool converged = true;
         double until = 0.0;                                 // s
         double log_density = 0.0, first_log_density = 0.0;  // change over the step
-        double closing = 0.0;                               // bound of how much any gap closed, m
         bool leapt = false;                                 // further than any list of pairs reaches
     };
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
-    Motion solve(const Motion* first, const Motion& guess, const RigidClusters& clusters, const StepSettings& settings,
-                 StepReport& report);
-    Trial attempt(double duration, double until, const Motion& guess);
+    /// What a trial step solves, on the pairs chosen last.
+    struct Problem {
+        const std::vector<double>& diffusion;  // of each pair of materials over the step, m5/N
+        const RigidClusters& clusters;
+        const StepSettings& settings;
+        std::optional<SinterStep> step;
+
+        void take(const Packing& packing, Candidates& candidates);
+    };
+    void solve(Problem& problem, bool second, Trial& trial);
+    Trial attempt(double until, const Motion& guess);
     Trial accepted_attempt(double& duration, double latest_time);
     Trial land_on(double log_change, double& duration, const Trial& beyond);
     double parabola(double log_change, double duration, double log_density) const;
-    Motion guess_from(const Motion& motion, double factor) const;
+    Motion scaled(const Motion& motion, double factor) const;
     double first_duration();
     StepRecord finish(const Trial& trial, double duration);
 
     Candidates candidates_;
     Motion last_motion_;               // of the last step, the guess of the next one
     double last_rate_ = 0.0, rate_before_ = 0.0;  // of the logarithm of the density in the last two steps, 1/s of equivalent time
-    double last_closing_ = 0.0;        // bound of the closing of gaps in the last step, m
     double last_duration_ = 0.0, next_duration_ = 0.0;  // s of equivalent time
     double error_ = 0.0;
     std::size_t idle_steps_ = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/spatial_order.h"
@@ -11,7 +12,8 @@ namespace kiln::numerics {
 
 namespace {
 
-constexpr double list_margin = 0.06;  // of a radius, that the list of pairs reaches beyond touch
+constexpr double list_room = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
+constexpr double room_ahead = 2.0;    // of the travel of a fast particle, that is made room for
 constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
 constexpr std::size_t worth_threads = 8192;  // particles from which a pass takes longer than waking and joining threads
 
@@ -29,15 +31,21 @@ Packing::Packing(State state, Faces faces) : state_(std::move(state)) {
     order_ = spatial_order(state_.box, particles.position, 2.0 * largest_radius_);
     particles = take_rows(particles, order_);
     density_ = solid_ / state_.box.volume();
-    find_pairs(0.0);
+    list_pairs(list_room * mean_radius_);
 }
 
-void Packing::find_pairs(double closing) {
+void Packing::list_pairs(double room) {
+    room_.assign(size(), room);
+    find_pairs();
+}
+
+void Packing::find_pairs() {
     const Particles& particles = state_.particles;
-    margin_left_ = std::max(list_margin * mean_radius_, 1.5 * closing);
     std::vector<double> reach = particles.radius;
-    for (double& each : reach) each += 0.5 * margin_left_;
+    for (std::size_t row = 0; row < size(); ++row) reach[row] += room_[row];
     pairs_ = kiln::find_pairs(state_.box, particles.position, reach);
+    least_room_ = *std::min_element(room_.begin(), room_.end());
+    ++lists_;
     for (const Pair& pair : pairs_) {
         const auto [first, second] = radii(pair);
         if (vector(pair).norm() < coincident * (first + second))
@@ -46,9 +54,20 @@ void Packing::find_pairs(double closing) {
     }
 }
 
-const std::vector<Pair>& Packing::pairs_within(double closing) {
-    if (margin_left_ < closing) find_pairs(closing);
-    return pairs_;
+/// Bound of what a particle's motion takes off the gaps to particles beyond its room, m: they close by no more than both travel.
+double Packing::travel(std::size_t row, const Motion& motion) const {
+    return Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm() +
+           motion.strain.cwiseAbs().maxCoeff() * (state_.particles.radius[row] + room_[row]);
+}
+
+void Packing::cover(const Motion& motion, double factor) {
+    bool covered = true;
+#pragma omp parallel for schedule(static) reduction(&& : covered) if (size() >= worth_threads)
+    for (std::size_t row = 0; row < size(); ++row) covered = covered && factor * travel(row, motion) <= room_[row];
+    if (covered) return;
+    for (std::size_t row = 0; row < size(); ++row)
+        room_[row] = std::clamp(room_ahead * factor * travel(row, motion), list_room * mean_radius_, mean_radius_);
+    find_pairs();
 }
 
 double Packing::closing_bound(const Motion& motion) const {
@@ -56,7 +75,7 @@ double Packing::closing_bound(const Motion& motion) const {
 #pragma omp parallel for schedule(static) reduction(max : largest) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row)
         largest = std::max(largest, Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm());
-    return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * (2.0 * largest_radius_ + margin_left_);
+    return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * 2.0 * largest_radius_;
 }
 
 Vec3 Packing::body_stretch(const Motion& motion) const {
@@ -89,12 +108,15 @@ double Packing::log_density_change(const Motion& motion) const {
            body_stretch(motion).array().log().sum();
 }
 
-void Packing::apply(const Motion& motion, double until, double temperature, double closing) {
+void Packing::apply(const Motion& motion, double until, double temperature) {
     Box& box = state_.box;
     const Vec3 body = body_stretch(motion);
     const Vec3 stretch = Vec3::Ones() + motion.strain;
-#pragma omp parallel for schedule(static) if (size() >= worth_threads)
+    double least = std::numeric_limits<double>::infinity();
+#pragma omp parallel for schedule(static) reduction(min : least) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row) {
+        room_[row] -= travel(row, motion);
+        least = std::min(least, room_[row]);
         Vec3& position = state_.particles.position[row];
         position = box.origin + stretch.cwiseProduct(position - box.origin) + Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
     }
@@ -106,7 +128,7 @@ void Packing::apply(const Motion& motion, double until, double temperature, doub
     state_.time = until;
     state_.temperature = temperature;
     density_ = solid_ / state_.box.volume();
-    margin_left_ -= closing;
+    least_room_ = least;
 }
 
 State Packing::state() const {
@@ -125,7 +147,7 @@ void Packing::restore(const Box& box, std::vector<Vec3> position, double time, d
     state_.temperature = temperature;
     strain_ = strain;
     density_ = solid_ / state_.box.volume();
-    find_pairs(0.0);
+    list_pairs(list_room * mean_radius_);
 }
 
 }  // namespace kiln::numerics

@@ -28,10 +28,17 @@ class Packing {
     const Vec3& strain() const { return strain_; }      // logarithmic, since the start
     double mean_radius() const { return mean_radius_; }  // m, that of the mean volume
 
-    /// Pairs whose gap is less than `closing` (m), and perhaps others; sorted.
-    const std::vector<Pair>& pairs_within(double closing);
+    /// Pairs that touch or may come to touch while each particle has room left to travel; sorted.
     const std::vector<Pair>& pairs() const { return pairs_; }
-    double margin() const { return margin_left_; }  // m, of the present list of pairs
+
+    /// Makes the list of pairs hold all that touch under `factor` times a motion, if it does not.
+    void cover(const Motion& motion, double factor = 1.0);
+
+    /// Lists the pairs anew, with the same room (m) for each particle.
+    void list_pairs(double room);
+
+    double least_room() const { return least_room_; }  // m, of any particle
+    int lists() const { return lists_; }               // of pairs that were made so far
 
     /// Vector between the centres of a pair, m; its radii, m.
     Vec3 vector(const Pair& pair) const { return pair_vector(state_.box, state_.particles.position, pair); }
@@ -46,8 +53,8 @@ class Packing {
     /// square distance of its mass from its centre, which the box follows.
     double log_density_change(const Motion& motion) const;
 
-    /// Moves particles and box. closing: closing_bound of the motion.
-    void apply(const Motion& motion, double until, double temperature, double closing);
+    /// Moves particles and box.
+    void apply(const Motion& motion, double until, double temperature);
 
     ContactStatistics statistics() const { return contact_statistics(state_.box, state_.particles, pairs_); }
 
@@ -58,13 +65,16 @@ class Packing {
     void restore(const Box& box, std::vector<Vec3> position, double time, double temperature, const Vec3& strain);
 
    private:
-    void find_pairs(double closing);
+    void find_pairs();
+    double travel(std::size_t row, const Motion& motion) const;
     Vec3 body_stretch(const Motion& motion) const;
 
     State state_;
     std::vector<std::int32_t> order_;  // row in the input of each present row
     std::vector<Pair> pairs_;
-    double margin_left_ = -1.0;  // closing that the list of pairs still covers, m
+    std::vector<double> room_;  // how far each particle may still travel under the present list, m
+    double least_room_ = 0.0;   // of them all, m
+    int lists_ = 0;
     double largest_radius_ = 0.0, mean_radius_ = 0.0;  // m
     double solid_ = 0.0;                               // volume of the particles, m3
     double density_ = 0.0;

@@ -11,18 +11,13 @@ namespace {
 /// Part of a diagonal block's trace below which what elimination left of it is rounding: the block moves freely with what hangs on it.
 constexpr double smallest_pivot = 1e-6;
 
-Eigen::Matrix3d stiffness_of(const ContactNetwork& network, std::size_t entry) {
-    const Vec3 n(network.nx[entry], network.ny[entry], network.nz[entry]);
-    return network.tangential[entry] * Eigen::Matrix3d::Identity() +
-           (network.normal[entry] - network.tangential[entry]) * n * n.transpose();
-}
-
 /// Inverse of a pivot; zero along directions that are free, so that a cluster which hangs on nothing stays where its last particle is.
 Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace) {
     const double floor = smallest_pivot * trace;
-    const Eigen::LLT<Eigen::Matrix3d> factor(pivot);
-    if (factor.info() == Eigen::Success && factor.matrixLLT().diagonal().array().square().minCoeff() > floor)
-        return factor.solve(Eigen::Matrix3d::Identity());
+    const double first = pivot(0, 0), second = pivot(1, 1) - pivot(1, 0) * pivot(1, 0) / first;  // D of its L D L^T
+    const double rest = pivot(2, 1) - pivot(2, 0) * pivot(1, 0) / first;
+    const double third = pivot(2, 2) - pivot(2, 0) * pivot(2, 0) / first - rest * rest / second;
+    if (first > floor && second > floor && third > floor) return pivot.inverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(pivot);
     const Vec3 values = modes.eigenvalues();
     const Vec3 inverse = (values.array() > floor).select(values.cwiseInverse(), 0.0);
@@ -32,13 +27,16 @@ Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace) {
 }  // namespace
 
 Preconditioner::Preconditioner(const ContactNetwork& network)
-    : row_begin_(network.particles() + 1, 0), place_(network.first.size(), 0), diagonal_(network.particles()), inverse_(network.particles()) {
+    : row_begin_(network.particles() + 1, 0),
+      place_(network.first.size(), 0),
+      diagonal_(network.particles()),
+      inverse_(block_floats * network.particles() + 1) {
     for (const ContactNetwork::Chunk& chunk : network.chunks())
         for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry)
             ++row_begin_[static_cast<std::size_t>(network.second[entry]) + 1];
     for (std::size_t row = 0; row < network.particles(); ++row) row_begin_[row + 1] += row_begin_[row];
     column_.resize(row_begin_.back());
-    lower_.resize(row_begin_.back());
+    lower_.resize(block_floats * row_begin_.back() + 1);
     std::vector<std::size_t> next(row_begin_.begin(), row_begin_.end() - 1);
     for (const ContactNetwork::Chunk& chunk : network.chunks())  // entries are sorted by their first particle, so rows come out sorted
         for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry) {
@@ -47,17 +45,18 @@ Preconditioner::Preconditioner(const ContactNetwork& network)
         }
 }
 
-void Preconditioner::assemble(const ContactNetwork& network, std::size_t index) {
+void Preconditioner::assemble(const Stiffness& stiffness, std::size_t index) {
+    const ContactNetwork& network = stiffness.network();
     const ContactNetwork::Chunk& chunk = network.chunks()[index];
     for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) diagonal_[row].setZero();
     for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
         if (network.first[entry] == network.second[entry]) continue;  // its own image: no relative motion but by strain
-        const Eigen::Matrix3d block = stiffness_of(network, entry);
+        const Eigen::Matrix3d joint = stiffness.block(entry);
         for (const std::int32_t particle : {network.first[entry], network.second[entry]}) {
             const auto row = static_cast<std::size_t>(particle);
-            if (row >= chunk.first_particle && row < chunk.last_particle) diagonal_[row] += block;
+            if (row >= chunk.first_particle && row < chunk.last_particle) diagonal_[row] += joint;
         }
-        if (entry < chunk.first_only) lower_[place_[entry]] = -block.cast<float>();
+        if (entry < chunk.first_only) block(lower_, place_[entry]) = -joint.cast<float>();
     }
 }
 
@@ -71,10 +70,10 @@ void Preconditioner::eliminate(const ContactNetwork::Chunk& chunk) {
         upper.resize(end - begin);
         for (std::size_t place = begin; place < end; ++place) {
             const auto i = static_cast<std::size_t>(column_[place]);
-            Eigen::Matrix3d u = lower_[place].cast<double>();
+            Eigen::Matrix3d u = block(lower_, place).cast<double>();
             for (std::size_t a = begin, b = row_begin_[i]; a < place && b < row_begin_[i + 1];) {
                 if (column_[a] == column_[b]) {
-                    u -= upper[a - begin] * lower_[b].cast<double>().transpose();
+                    u -= upper[a - begin] * block(lower_, b).cast<double>().transpose();
                     ++a;
                     ++b;
                 } else {
@@ -82,19 +81,20 @@ void Preconditioner::eliminate(const ContactNetwork::Chunk& chunk) {
                 }
             }
             upper[place - begin] = u;
-            lower_[place] = (u * inverse_[i]).cast<float>();
-            diagonal_[row] -= lower_[place].cast<double>() * u.transpose();
+            block(lower_, place) = (u * block(inverse_, i).cast<double>()).cast<float>();
+            diagonal_[row] -= block(lower_, place).cast<double>() * u.transpose();
         }
-        inverse_[row] = pivot_inverse(diagonal_[row], trace);
+        block(inverse_, row) = pivot_inverse(diagonal_[row], trace).cast<float>();
     }
 }
 
-void Preconditioner::factorise_strain(const ContactNetwork& network, std::span<const Vec3> levers) {
+void Preconditioner::factorise_strain(const Stiffness& stiffness, std::span<const Vec3> levers) {
+    const ContactNetwork& network = stiffness.network();
     std::vector<Eigen::Matrix3d> parts(network.chunks().size(), Eigen::Matrix3d::Zero());
     network.for_chunks([&](std::size_t index) {
         network.for_owned(index, [&](std::size_t entry) {
             const Vec3& l = levers[static_cast<std::size_t>(network.pair[entry])];
-            parts[index] += l.asDiagonal() * stiffness_of(network, entry) * l.asDiagonal();
+            parts[index] += l.asDiagonal() * stiffness.block(entry) * l.asDiagonal();
         });
     });
     Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
@@ -102,48 +102,36 @@ void Preconditioner::factorise_strain(const ContactNetwork& network, std::span<c
     strain_inverse_ = pivot_inverse(strain, strain.trace());
 }
 
-void Preconditioner::factorise(const ContactNetwork& network, std::span<const Vec3> levers) {
+void Preconditioner::factorise(const Stiffness& stiffness, std::span<const Vec3> levers) {
+    const ContactNetwork& network = stiffness.network();
     network.for_chunks([&](std::size_t index) {
-        assemble(network, index);
+        assemble(stiffness, index);
         eliminate(network.chunks()[index]);
     });
-    factorise_strain(network, levers);
+    factorise_strain(stiffness, levers);
 }
 
-void Preconditioner::apply(const ContactNetwork& network, std::size_t index, const Motion& r, Motion& z) const {
-    const ContactNetwork::Chunk& chunk = network.chunks()[index];
-    const double* in = r.displacement.data();
-    double* out = z.displacement.data();
+void Preconditioner::apply(const ContactNetwork::Chunk& chunk, const QuadMotion& r, QuadMotion& z) const {
+    // The fourth number of a column is the next column's first: what it brings into spare places is cleared in the end.
+    Quad* out = z.displacement.data();
     for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {  // L y = r
-        double x = in[3 * row], y = in[3 * row + 1], w = in[3 * row + 2];
+        Quad y = r.displacement[row];
         for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place) {
-            const float* l = lower_[place].data();  // by columns
-            const double* known = out + 3 * column_[place];
-            const double a = known[0], b = known[1], c = known[2];
-            x -= l[0] * a + l[3] * b + l[6] * c;
-            y -= l[1] * a + l[4] * b + l[7] * c;
-            w -= l[2] * a + l[5] * b + l[8] * c;
+            const float* l = &lower_[block_floats * place];
+            const Quad known = out[column_[place]];
+            y -= load(l) * all<0>(known) + load(l + 3) * all<1>(known) + load(l + 6) * all<2>(known);
         }
-        out[3 * row] = x;
-        out[3 * row + 1] = y;
-        out[3 * row + 2] = w;
+        out[row] = y;
     }
     for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {  // D
-        const double* d = inverse_[row].data();
-        double* value = out + 3 * row;
-        const double a = value[0], b = value[1], c = value[2];
-        value[0] = d[0] * a + d[3] * b + d[6] * c;
-        value[1] = d[1] * a + d[4] * b + d[7] * c;
-        value[2] = d[2] * a + d[5] * b + d[8] * c;
+        const float* d = &inverse_[block_floats * row];
+        out[row] = load(d) * all<0>(out[row]) + load(d + 3) * all<1>(out[row]) + load(d + 6) * all<2>(out[row]);
     }
     for (std::size_t row = chunk.last_particle; row-- > chunk.first_particle;) {  // L^T z = y
-        const double a = out[3 * row], b = out[3 * row + 1], c = out[3 * row + 2];
+        const Quad known = out[row] = only_vector(out[row]);
         for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place) {
-            const float* l = lower_[place].data();
-            double* left = out + 3 * column_[place];
-            left[0] -= l[0] * a + l[1] * b + l[2] * c;
-            left[1] -= l[3] * a + l[4] * b + l[5] * c;
-            left[2] -= l[6] * a + l[7] * b + l[8] * c;
+            const float* l = &lower_[block_floats * place];
+            out[column_[place]] -= transposed_product(load(l), load(l + 3), load(l + 6), known);
         }
     }
 }

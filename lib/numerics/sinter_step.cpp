@@ -18,7 +18,7 @@ constexpr double overshoot = 0.5;          // slope left at the end of a Newton 
 constexpr double least_tangent = 0.1;      // of the tangent at a pair's own end of the step
 constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
 constexpr double tightest_linear = 1e-3;
-constexpr double predictor_tolerance = 10.0;  // of the first-order solution, over that of the step
+constexpr double predictor_tolerance = 20.0;  // of the first-order solution, over that of the step
 constexpr int most_factorisations = 2;     // in one minimisation; later the tangents hardly change
 constexpr double tolerance_share = 0.3;    // of the tolerance, that is left to linear solves
 constexpr double limit_stiffness = 10.0;   // of the springs at closing limits, over the mean tangent of the contacts
@@ -41,8 +41,8 @@ double alone(const PairStep& pair, double share) {
 }
 
 /// Resistance to closing from one overlap to another, both not negative: (K/I) times the integral of h^2.
-double resistance(const PairStep& pair, double start, double reached) {
-    return pair.cubic / 3.0 * (reached * reached * reached - start * start * start);
+double resistance(double cubic, double start, double reached) {
+    return cubic / 3.0 * (reached * reached * reached - start * start * start);
 }
 
 }  // namespace
@@ -52,14 +52,14 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       pairs_(pairs),
       settings_(settings),
       network_(box, position, pairs),
+      stiffness_(network_),
       solver_(position.size()),
       preconditioner_(network_),
-      normals_(pairs.size()),
+      rows_(pairs.size()),
+      entries_(network_.pair.size()),
       levers_(pairs.size()),
-      share_(pairs.size()),
-      tangential_(pairs.size()),
-      goal_(pairs.size()),
       total_(3 * position.size()),
+      drive_(position.size()),
       unbalanced_(position.size()),
       direction_(position.size()) {}
 
@@ -73,11 +73,10 @@ void SinterStep::start_geometry(const std::vector<PairStep>& step) {
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < step.size(); ++row) {
         const PairStep& pair = step[row];
-        normals_[row] = pair.vector / pair.distance;
-        share_[row] = pair.overlap >= 0.0 ? 1.0 : 0.0;
-        goal_[row] = alone(pair, share_[row]);
+        const double share = pair.overlap >= 0.0 ? 1.0 : 0.0, goal = alone(pair, share);
         // Mean overlap of the step as the pair alone would have it: at its start a new contact has no neck to resist shear.
-        tangential_[row] = pair.shear * share_[row] * 0.5 * (std::max(pair.overlap, 0.0) + goal_[row]);
+        const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + goal);
+        rows_[row] = {pair.vector / pair.distance, pair.overlap, pair.cubic, goal, share * pair.force, pair.shear * share * mean_overlap};
     }
     pressure_volume_ = settings_.pressure * box_.volume();
     take_geometry(step);
@@ -89,10 +88,10 @@ void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Moti
         const PairStep& pair = step[row];
         const Vec3 end = pair.vector + relative(row, motion, pair.lever);
         const double end_overlap = pair.overlap + pair.distance - end.norm();
-        normals_[row] = (pair.vector + end).normalized();
-        share_[row] = touching_share(pair.overlap, end_overlap);
-        goal_[row] = alone(pair, share_[row]);
-        tangential_[row] = pair.shear * share_[row] * 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
+        const double share = touching_share(pair.overlap, end_overlap);
+        const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
+        rows_[row] = {(pair.vector + end).normalized(), pair.overlap, pair.cubic, alone(pair, share), share * pair.force,
+                      pair.shear * share * mean_overlap};
     }
     const Vec3 stretch = Vec3::Ones() + 0.5 * motion.strain;  // the pressure acts on the faces of the box as they are half way
     pressure_volume_ = settings_.pressure * box_.volume() * stretch.prod();
@@ -102,63 +101,52 @@ void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Moti
 
 /// Brings what does not change between Newton's iterations into the order of the network.
 void SinterStep::take_geometry(const std::vector<PairStep>& step) {
+#pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < step.size(); ++row) levers_[row] = step[row].lever;
     network_.for_chunks([&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network_.chunks()[index];
         for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
-            const auto row = static_cast<std::size_t>(network_.pair[entry]);
-            network_.nx[entry] = static_cast<float>(normals_[row][0]);
-            network_.ny[entry] = static_cast<float>(normals_[row][1]);
-            network_.nz[entry] = static_cast<float>(normals_[row][2]);
-            network_.tangential[entry] = static_cast<float>(tangential_[row]);
+            entries_[entry] = rows_[static_cast<std::size_t>(network_.pair[entry])];
+            stiffness_.set_direction(entry, entries_[entry].normal);
         }
     });
+    const Motion rest(network_.particles());
+    network_.gather(rest, drive_, total_, [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].drive * entries_[entry].normal; });
     start_limits(step);
 }
 
 void SinterStep::start_limits(const std::vector<PairStep>& step) {
     double stiffness = 0.0;
-    for (std::size_t row = 0; row < step.size(); ++row) stiffness += share_[row] * step[row].cubic * goal_[row] * goal_[row];
+    for (const PairForce& pair : rows_) stiffness += pair.drive > 0.0 ? pair.cubic * square(pair.goal) : 0.0;
     limits_.reset(step.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step.size(), 1)));
     for (std::size_t row = 0; row < step.size(); ++row) {
         const PairStep& pair = step[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
-        limits_.add(row, pair.limit, std::max(0.0, share_[row] * pair.force - resistance(pair, start, reached)));  // as if alone
+        limits_.add(row, pair.limit, std::max(0.0, rows_[row].drive - resistance(pair.cubic, start, reached)));  // as if alone
     }
 }
 
-void SinterStep::forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant) {
-    ContactNetwork& network = network_;
-    network.gather(motion, unbalanced, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
-        const auto row = static_cast<std::size_t>(network.pair[entry]);
-        const PairStep& pair = step[row];
-        const Vec3& n = normals_[row];
-        const double along = n.dot(du);  // opening
+void SinterStep::forces(const Motion& motion, Motion& unbalanced, bool secant) {
+    network_.gather(motion, unbalanced, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
+        const PairForce& pair = entries_[entry];
+        const double along = pair.normal.dot(du);  // opening
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap - along);
         // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least a
         // part of the tangent there.
-        const double goal = goal_[row];
-        const double least = secant ? (goal * goal + goal * reached + reached * reached) / 3.0 : least_tangent * goal * goal;
-        const double limit = limits_.any() ? limits_.reaction(row, -along) : 0.0;
-        const double tangent = pair.cubic * std::max(reached * reached, reached < goal ? least : 0.0);
-        network.normal[entry] = static_cast<float>(tangent + (limit > 0.0 ? limits_.stiffness() : 0.0));
-        return (share_[row] * pair.force - resistance(pair, start, reached) - limit) * n + tangential_[row] * (du - along * n);
+        const double least = secant ? (square(pair.goal) + pair.goal * reached + square(reached)) / 3.0 : least_tangent * square(pair.goal);
+        const double limit = limits_.any() ? limits_.reaction(static_cast<std::size_t>(network_.pair[entry]), -along) : 0.0;
+        const double tangent = pair.cubic * std::max(square(reached), reached < pair.goal ? least : 0.0);
+        stiffness_.set(entry, tangent + (limit > 0.0 ? limits_.stiffness() : 0.0), pair.tangential);
+        return (pair.drive - resistance(pair.cubic, start, reached) - limit - pair.tangential * along) * pair.normal + pair.tangential * du;
     });
     strain_force_ = unbalanced.strain;
     unbalanced.strain += pressure_volume_;
     project(unbalanced, settings_.allowed_strain);
-    work_ = network.sum_chunks([&](std::size_t index) {
-        double sum = 0.0;
-        network.for_owned(index, [&](std::size_t entry) {
-            const auto row = static_cast<std::size_t>(network.pair[entry]);
-            sum -= share_[row] * step[row].force * normals_[row].dot(relative(row, motion, levers_[row]));
-        });
-        return sum;
-    }) - pressure_volume_.dot(motion.strain);
+    work_ = -dot(network_, drive_, motion) - pressure_volume_.dot(motion.strain);
 }
 
-double SinterStep::line_search(const std::vector<PairStep>& step, double slope, Motion& motion) {
+double SinterStep::line_search(double slope, Motion& motion) {
     double length = 1.0, low = 0.0, low_slope = -slope, high = 1.0, high_slope = dot(network_, unbalanced_, direction_);
     if (high_slope <= overshoot * slope) return length;
     for (int search = 0; search < most_searches; ++search) {  // regula falsi on the slope; a convex function has one zero of it
@@ -166,7 +154,7 @@ double SinterStep::line_search(const std::vector<PairStep>& step, double slope, 
         const double next = low + share * (high - low);
         add(network_, next - length, direction_, motion);
         length = next;
-        forces(step, motion, unbalanced_, false);
+        forces(motion, unbalanced_, false);
         const double left = dot(network_, unbalanced_, direction_);
         if (std::abs(left) <= overshoot * slope) break;
         if (left > 0.0) {
@@ -181,23 +169,23 @@ double SinterStep::line_search(const std::vector<PairStep>& step, double slope, 
     return length;
 }
 
-bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report) {
-    forces(step, motion, unbalanced_, true);
+bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
+    forces(motion, unbalanced_, true);
     for (int iteration = 0; iteration < most_newton; ++iteration) {
-        if (iteration < most_factorisations) preconditioner_.factorise(network_, levers_);
+        if (iteration < most_factorisations) preconditioner_.factorise(stiffness_, levers_);
         unbalanced_.strain *= -1.0;
         for (double& component : unbalanced_.displacement) component = -component;
         // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
         const LinearGoal goal{.loosest = loosest_linear, .tightest = tightest_linear, .scale = work_,
                               .enough = square(tolerance_share * tolerance) * work_, .most_iterations = most_conjugate_gradients};
-        const LinearSolve linear = solver_.solve(network_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, goal);
+        const LinearSolve linear = solver_.solve(stiffness_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, goal);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
         const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction
         if (!(slope > 0.0)) return true;
         add(network_, 1.0, direction_, motion);
-        forces(step, motion, unbalanced_, false);
-        const double length = line_search(step, slope, motion);
+        forces(motion, unbalanced_, false);
+        const double length = line_search(slope, motion);
         const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
         const double now = length < 1.0 ? error : (linear.residual + error) * error;
         if (now < tolerance) return true;
@@ -206,14 +194,14 @@ bool SinterStep::newton(const std::vector<PairStep>& step, double tolerance, Mot
 }
 
 bool SinterStep::minimise(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report) {
-    bool converged = newton(step, tolerance, motion, report);
+    bool converged = newton(tolerance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
-            [&](std::size_t row) { return -normals_[row].dot(relative(row, motion, levers_[row])); },
+            [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion, levers_[row])); },
             [&](std::size_t row) { return limit_accuracy * step[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == most_limit_passes) return false;
-        converged = newton(step, tolerance, motion, report);
+        converged = newton(tolerance, motion, report);
     }
     return converged;
 }
@@ -222,7 +210,7 @@ void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion)
     const std::size_t count = network_.particles();
     Clusters clusters(count);
     for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        if (share_[row] > 0.0 || step[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
+        if (rows_[row].drive > 0.0 || step[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
     }
     std::vector<Vec3> drift(count, Vec3::Zero());
     std::vector<double> members(count, 0.0);

@@ -55,6 +55,11 @@ class SinterStep {
     StepReport second_order(const std::vector<PairStep>& step, const Motion& first, Motion& motion);
 
    private:
+    /// What the force of one pair depends on besides the motion, for one geometry.
+    struct PairForce {
+        Vec3 normal;                                 // unit vector, from i to j
+        double overlap, cubic, goal, drive, tangential;  // h; K/I; h at the end if alone; share of f; kt
+    };
     /// Relative motion of pair `row` under a motion, m.
     Vec3 relative(std::size_t row, const Motion& motion, const Vec3& lever) const;
     void start_geometry(const std::vector<PairStep>& step);
@@ -62,22 +67,23 @@ class SinterStep {
     void take_geometry(const std::vector<PairStep>& step);
     void start_limits(const std::vector<PairStep>& step);
     bool minimise(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report);
-    bool newton(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report);
-    double line_search(const std::vector<PairStep>& step, double slope, Motion& motion);
-    void forces(const std::vector<PairStep>& step, const Motion& motion, Motion& unbalanced, bool secant);
+    bool newton(double tolerance, Motion& motion, StepReport& report);
+    double line_search(double slope, Motion& motion);
+    void forces(const Motion& motion, Motion& unbalanced, bool secant);
     void remove_drift(const std::vector<PairStep>& step, Motion& motion) const;
 
     Box box_;
     std::span<const Pair> pairs_;
     StepSettings settings_;
     ContactNetwork network_;
+    Stiffness stiffness_;
     ConjugateGradients solver_;
     Preconditioner preconditioner_;
     ClosingLimits limits_;
-    std::vector<Vec3> normals_, levers_;  // a row a pair
-    std::vector<double> share_, tangential_, goal_;
+    std::vector<PairForce> rows_, entries_;  // of the pairs, and in the order of the network
+    std::vector<Vec3> levers_;               // a row a pair, m
     std::vector<double> total_;
-    Motion unbalanced_, direction_;
+    Motion drive_, unbalanced_, direction_;  // drive_: the driving forces alone
     Vec3 pressure_volume_ = Vec3::Zero();  // work of the pressure for a unit strain along each axis
     Vec3 strain_force_ = Vec3::Zero();     // work of the contacts for the same, in the last call of forces()
     double work_ = 0.0;                    // of the driving forces in the last call of forces()

@@ -15,7 +15,8 @@ namespace {
 constexpr double accuracy = 1e-7;       // of the solves, energy norm
 constexpr int most_iterations = 20000;
 constexpr double least_overlap = 1e-3;  // of the reduced radius, see viscosity.h
-constexpr int refinements = 2;  // the solver's stiffness is in single precision
+constexpr double pass_accuracy = 1e-3;  // of one solve, which is in single precision; refinement takes up what it leaves
+constexpr int most_refinements = 20;
 
 /// Touching contacts of a state as the nodes see them; viscosities over `unit`, which makes them plain numbers near one.
 struct Contacts {
@@ -49,16 +50,14 @@ Contacts contacts_of(const Packing& packing, const Kinetics& kinetics, const phy
     return contacts;
 }
 
-/// The network with the contacts' stiffness, in single precision.
-void fill(ContactNetwork& network, const Contacts& contacts) {
+Stiffness stiffness_of(const ContactNetwork& network, const Contacts& contacts) {
+    Stiffness stiffness(network);
     for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
         const auto row = static_cast<std::size_t>(network.pair[entry]);
-        network.nx[entry] = static_cast<float>(contacts.normals[row][0]);
-        network.ny[entry] = static_cast<float>(contacts.normals[row][1]);
-        network.nz[entry] = static_cast<float>(contacts.normals[row][2]);
-        network.normal[entry] = static_cast<float>(contacts.normal[row] / contacts.unit);
-        network.tangential[entry] = static_cast<float>(contacts.tangential[row] / contacts.unit);
+        stiffness.set_direction(entry, contacts.normals[row]);
+        stiffness.set(entry, contacts.normal[row] / contacts.unit, contacts.tangential[row] / contacts.unit);
     }
+    return stiffness;
 }
 
 std::vector<Pair> sticking_pairs(const Packing& packing, const Kinetics& kinetics) {
@@ -83,10 +82,10 @@ ViscousResponse viscous_response(const State& state, const physics::ContactConst
     ViscousResponse response;
     if (contacts.pairs.empty()) return response;
 
-    ContactNetwork network(packing.box(), clusters.places(), contacts.pairs);
-    fill(network, contacts);
+    const ContactNetwork network(packing.box(), clusters.places(), contacts.pairs);
+    const Stiffness stiffness = stiffness_of(network, contacts);
     Preconditioner preconditioner(network);
-    preconditioner.factorise(network, contacts.levers);
+    preconditioner.factorise(stiffness, contacts.levers);
     ConjugateGradients solver(network.particles());
     std::vector<double> total(3 * network.particles());
     const auto stress_under = [&](const Vec3& strain_rate, double drive) -> Vec3 {
@@ -101,15 +100,18 @@ ViscousResponse viscous_response(const State& state, const physics::ContactConst
                        contacts.tangential[row] / contacts.unit * du;
             });
         };
-        LinearGoal goal{.loosest = accuracy, .tightest = accuracy, .most_iterations = most_iterations};
-        for (int pass = 0; pass <= refinements; ++pass) {
+        double first = 0.0;
+        for (int pass = 0; pass < most_refinements; ++pass) {
             unbalanced();
             for (double& component : forces.displacement) component = -component;
             forces.strain.setZero();
-            const LinearSolve solve = solver.solve(network, preconditioner, Eigen::Matrix3d::Zero(), forces, correction, goal);
+            const LinearGoal goal{.loosest = pass_accuracy, .tightest = pass_accuracy, .enough = accuracy * accuracy * first,
+                                  .most_iterations = most_iterations};
+            const LinearSolve solve = solver.solve(stiffness, preconditioner, Eigen::Matrix3d::Zero(), forces, correction, goal);
+            if (pass == 0) first = solve.start;
             response.conjugate_gradients += solve.iterations;
-            response.converged = response.converged && solve.iterations < goal.most_iterations;
-            goal.enough = std::max(goal.enough, accuracy * accuracy * solve.start);  // what is left then may be rounding
+            response.converged = solve.start <= accuracy * accuracy * first;
+            if (response.converged) break;
             add(network, 1.0, correction, motion);
         }
         unbalanced();
