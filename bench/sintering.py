@@ -1,8 +1,9 @@
 """sintering.py: sintering's error against its time, and its cost against the number of particles, as JSON lines; -o FIGURE draws both.
 
-error  density at fixed times against a run of tolerance 1e-7, for the implicit method of both orders and the explicit one with
-       less and less inertia; 6,000 particles from a loose packing, from one compacted affinely, and of a free cube
-size   wall time, peak memory and iterations from a density of 0.58 to 0.70, for 1,000 to --largest particles
+error   density at fixed times against a run of tolerance 1e-7, for the implicit method of both orders and the explicit one with
+        less and less inertia; 6,000 particles from a loose packing, from one compacted affinely, and of a free cube; one thread
+factor  processor time of the explicit method over that of the fastest implicit run with no larger error
+size    wall time, peak memory and iterations from a density of 0.58 to 0.70, for 1,000 to --largest particles
 """
 import argparse
 import json
@@ -23,9 +24,10 @@ STARTS = {
     "affine": ("--density 0.45 --method affine --compact-to 0.58", ""),
     "free cube": ("--density 0.45 --method affine --compact-to 0.58", "--boundary free"),
 }
-TIMES = "4s,20s,60s,150s"
+TIMES = "4s,20s,60s"
 TOLERANCES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6)
 REFERENCE_TOLERANCE = 1e-7
+TIGHTEST_FIRST_ORDER = 3e-4  # its steps grow as one over the tolerance: 1,600 at this one
 SCALINGS = (1e20, 1e19, 1e18)
 
 
@@ -33,43 +35,59 @@ def say(case, **values):
     print(json.dumps({"bench": "sintering", "case": case, **values}), flush=True)
 
 
-def run(command):
-    """Runs one of the programs; seconds of wall time and peak memory, bytes."""
+def run(command, environment=None):
+    """Runs one of the programs; seconds of wall time, seconds of the processor, and peak memory, bytes."""
     start = time.perf_counter()
-    process = subprocess.Popen([os.path.join(PROGRAMS, command[0]), *command[1:]])
+    process = subprocess.Popen([os.path.join(PROGRAMS, command[0]), *command[1:]], env=environment)
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:
         raise SystemExit(f"{' '.join(command)}: status {os.waitstatus_to_exitcode(status)}")
-    return time.perf_counter() - start, usage.ru_maxrss * 1024
+    return time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 
 
-def sinter(folder, green, options):
-    """Densities at the wanted times, seconds, and the history of a run."""
+def sinter(folder, green, options, environment=None):
+    """Densities at the wanted states, what run() gives, and the history of a run."""
     states, history = os.path.join(folder, "states.kiln"), os.path.join(folder, "history.jsonl")
-    seconds, memory = run(["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green])
+    usage = run(["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green], environment)
     with open(states, "rb") as stream:
         densities = [relative_density(state) for state in read(stream)]
     with open(history, encoding="utf-8") as stream:
         steps = [json.loads(line) for line in stream]
-    return densities, seconds, memory, steps
+    return densities, usage, steps
 
 
-def errors(folder, particles, tightest, lightest):
+def factors(rows):
+    """For each explicit run the fastest implicit one of the same start that is as accurate."""
+    for row in rows:
+        if row["method"] != "explicit":
+            continue
+        rivals = [r for r in rows if r["start"] == row["start"] and r["method"] == "implicit, second order" and r["error"] <= row["error"]]
+        if rivals:
+            best = min(rivals, key=lambda rival: rival["seconds"])
+            say("factor", start=row["start"], mass_scaling=row["setting"], error=row["error"], tolerance=best["setting"],
+                implicit_error=best["error"], factor=row["seconds"] / best["seconds"])
+
+
+def errors(folder, starts, particles, tightest, lightest):
     rows = []
-    for name, (packing, boundary) in STARTS.items():
+    alone = {**os.environ, "OMP_NUM_THREADS": "1"}
+    for name in starts:
+        packing, boundary = STARTS[name]
         green = os.path.join(folder, "green.kiln")
         run(["sinter", "green", "-q", "-n", str(particles), *packing.split(), "--seed", "1", "-o", green])
         options = f"--at-time {TIMES} {boundary}"
-        exact = sinter(folder, green, f"{options} --tolerance {REFERENCE_TOLERANCE}")[0]
+        exact = sinter(folder, green, f"{options} --tolerance {REFERENCE_TOLERANCE}", alone)[0]
         methods = [("implicit, second order", f"--tolerance {t}", t) for t in TOLERANCES if t >= tightest]
-        methods += [("implicit, first order", f"--order 1 --tolerance {t}", t) for t in TOLERANCES if t >= max(tightest, 1e-4)]
+        methods += [("implicit, first order", f"--order 1 --tolerance {t}", t) 
+                    for t in TOLERANCES if t >= max(tightest, TIGHTEST_FIRST_ORDER)]
         methods += [("explicit", f"--method explicit --mass-scaling {s}", s) for s in SCALINGS if s >= lightest]
         for method, more, setting in methods:
-            densities, seconds, _, steps = sinter(folder, green, f"{options} {more}")
+            densities, (_, seconds, _), steps = sinter(folder, green, f"{options} {more}", alone)
             error = max(abs(a / b - 1.0) for a, b in zip(densities, exact))
             count = len(steps) if method != "explicit" else sum(step["attempts"] for step in steps)
-            rows.append({"start": name, "method": method, "setting": setting, "seconds": seconds, "error": error, "steps": count})
-            say("error", particles=particles, **rows[-1])
+            rows.append({"particles": particles, "start": name, "method": method, "setting": setting, "seconds": seconds, "error": error, "steps": count})
+            say("error", **rows[-1])
+    factors(rows)
     return rows
 
 
@@ -80,7 +98,7 @@ def sizes(folder, largest):
             break
         green = os.path.join(folder, "green.kiln")
         run(["sinter", "green", "-q", "-n", str(particles), *STARTS["affine"][0].split(), "--seed", "1", "-o", green])
-        _, seconds, memory, steps = sinter(folder, green, "--to-density 0.7")
+        _, (seconds, _, memory), steps = sinter(folder, green, "--to-density 0.7")
         newton, iterations = (sum(step[key] for step in steps) for key in ("newton", "conjugate_gradients"))
         rows.append({"particles": particles, "seconds": seconds, "peak_bytes": memory, "steps": len(steps), "newton": newton,
                      "conjugate_gradients": iterations, "iterations_per_solve": iterations / newton})
@@ -89,13 +107,15 @@ def sizes(folder, largest):
 
 
 def draw(error_rows, size_rows, path):
-    figure, axes = pyplot.subplots(1, len(STARTS) + 1, figsize=(12.0, 3.4))
+    starts = [start for start in STARTS if any(row["start"] == start for row in error_rows)]
+    figure, axes = pyplot.subplots(1, len(starts) + 1, figsize=(3.0 * len(starts) + 3.0, 3.4), squeeze=False)
+    axes = axes[0]
     styles = {"implicit, second order": (LINE, "o-"), "implicit, first order": (REFERENCE, "s--"), "explicit": (ACCENT, "^-")}
-    for axis, start in zip(axes, STARTS):
+    for axis, start in zip(axes, starts):
         for method, (colour, style) in styles.items():
             points = [(row["seconds"], row["error"]) for row in error_rows if (row["start"], row["method"]) == (start, method)]
             axis.loglog(*zip(*points), style, color=colour, label=method, markersize=4)
-        axis.set(title=f"{start}, 6,000 particles", xlabel="wall time, s")
+        axis.set(title=f"{start}, {error_rows[0]['particles']:,} particles", xlabel="processor time, s")
     axes[0].set_ylabel("largest relative error of the density")
     axes[0].legend()
     axis = axes[-1]
@@ -115,10 +135,17 @@ def main():
     parser.add_argument("--tightest", type=float, default=1e-6, help="tolerance")
     parser.add_argument("--lightest", type=float, default=1e18, help="mass scaling")
     parser.add_argument("--largest", type=int, default=1000000, help="packing")
+    parser.add_argument("--only", choices=("error", "size"), help="half of the measurements")
+    parser.add_argument("--start", action="append", choices=STARTS, help="of the error; all three unless told, may be repeated")
+    parser.add_argument("--draw", nargs="+", metavar="FILE", help="draw what earlier runs printed, measure nothing")
     given = parser.parse_args()
+    if given.draw:
+        rows = [json.loads(line) for name in given.draw for line in open(name, encoding="utf-8") if line.startswith("{")]
+        draw([row for row in rows if row["case"] == "error"], [row for row in rows if row["case"] == "size"], given.output)
+        return
     with tempfile.TemporaryDirectory() as folder:
-        size_rows = sizes(folder, given.largest)
-        error_rows = errors(folder, given.particles, given.tightest, given.lightest)
+        size_rows = sizes(folder, given.largest) if given.only != "error" else []
+        error_rows = errors(folder, given.start or STARTS, given.particles, given.tightest, given.lightest) if given.only != "size" else []
     if given.output:
         draw(error_rows, size_rows, given.output)
 

@@ -16,9 +16,14 @@ constexpr double largest_log_step = 0.05;   // of the density
 constexpr double guess_margin = 1.2;        // of the motion that is guessed, that pairs are listed for
 constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
+constexpr double least_room = 0.7;          // factor to the length that meets the tolerance, of an accepted step
+constexpr double smallest_factor = 0.2;     // of a rejected step's length
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
 constexpr std::size_t small_packing = 1000;  // particles; solving closely costs nothing there
 constexpr double small_share = 1e-3;        // of the solver's tolerance
+constexpr double predictor_share = 20.0;     // tolerance of a first-order solution that only prepares the second, over that one's
+constexpr double harmless_share = 0.03;      // of the tolerance, change of density in a first-order step that needs no control
+constexpr double alone_share = 0.1;          // of that tolerance, for first-order steps, whose error falls with their length only slowly
 constexpr std::size_t most_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
@@ -116,9 +121,11 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     const std::vector<double> diffusion = kinetics_.diffusion_over(packing_.time(), until);
     candidates_.choose(guess, guess, diffusion);
     const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
+    const double closely = settings_.solver_tolerance * (packing_.size() < small_packing ? small_share : 1.0);
     const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
                                 .pressure = candidates_.unit() * settings_.pressure,
-                                .solver_tolerance = settings_.solver_tolerance * (packing_.size() < small_packing ? small_share : 1.0)};
+                                .first_tolerance = closely * (settings_.second_order ? predictor_share : alone_share),
+                                .second_tolerance = closely};
     Problem problem{diffusion, clusters, settings, std::nullopt};
     problem.take(packing_, candidates_);
     Trial trial;
@@ -126,12 +133,15 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     trial.motion = trial.first_order = guess;
     solve(problem, false, trial);
     trial.motion = trial.first_order;
-    if (settings_.second_order && !trial.leapt) solve(problem, true, trial);
+    if (!trial.leapt) solve(problem, true, trial);
     if (trial.leapt) return trial;
     for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
         trial.report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
     trial.log_density = packing_.log_density_change(trial.motion);
-    trial.first_log_density = packing_.log_density_change(trial.first_order);
+    trial.difference = std::abs(trial.log_density - packing_.log_density_change(trial.first_order));
+    if (settings_.second_order) return trial;
+    trial.motion = trial.first_order;
+    trial.log_density = packing_.log_density_change(trial.motion);
     return trial;
 }
 
@@ -169,20 +179,30 @@ double ImplicitSintering::parabola(double log_change, double duration, double lo
     return guess > 0.0 && guess < duration ? guess : duration * log_change / log_density;
 }
 
+double ImplicitSintering::step_error(const Trial& trial) const {
+    return trial.difference * (settings_.second_order ? third_order_factor * std::abs(trial.log_density) : 1.0);
+}
+
+double ImplicitSintering::room_for(const Trial& trial) const {
+    if (trial.difference == 0.0) return std::numeric_limits<double>::infinity();
+    const double share = settings_.tolerance / typical_log_range / trial.difference;  // of a step, over its change of log density
+    if (settings_.second_order) return std::sqrt(share / third_order_factor);
+    return share * std::max(std::abs(trial.log_density), harmless_share * settings_.tolerance);
+}
+
 ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time) {
     const double room = kinetics_.equivalent(packing_.time(), latest_time);
     duration = std::min(next_duration_, room);
     const bool ends_on_time = duration < next_duration_ || room == next_duration_;
     double until = ends_on_time ? latest_time : kinetics_.after(packing_.time(), duration);
-    const double wanted_error = settings_.tolerance / (third_order_factor * typical_log_range);
     const double slowing = rate_before_ > 0.0 && last_rate_ > 0.0 ? std::clamp(last_rate_ / rate_before_, 0.5, 1.0) : 1.0;
     Motion guess = scaled(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
     Trial trial;
-    double difference = 0.0;
     for (int rejected = 0;; ++rejected) {
+        if (!(until > packing_.time()))
+            throw Error("no step is short enough to converge at " + std::to_string(packing_.time()) + " s");
         trial = attempt(until, guess);
-        difference = std::abs(trial.log_density - trial.first_log_density);
-        if (!trial.leapt && difference <= 2.0 * wanted_error && std::abs(trial.log_density) <= largest_log_step &&
+        if (!trial.leapt && room_for(trial) >= least_room && std::abs(trial.log_density) <= largest_log_step &&
             trial.converged)
             break;
         if (rejected == most_rejections) {
@@ -190,12 +210,12 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
                 throw Error("particles leap by more than a radius however short the step is at " + std::to_string(packing_.time()) + " s");
             break;  // the record says that it did not converge
         }
-        const double factor = std::clamp(0.8 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.2, 0.7);
+        const double factor = trial.leapt ? smallest_factor : std::clamp(0.8 * room_for(trial), smallest_factor, 0.7);
         guess = trial.leapt ? Motion(packing_.size()) : scaled(trial.motion, factor);
         duration *= factor;
         until = kinetics_.after(packing_.time(), duration);
     }
-    const double growth = std::clamp(0.9 * std::sqrt(wanted_error / std::max(difference, 1e-300)), 0.5, 2.5);
+    const double growth = std::clamp(0.9 * room_for(trial), 0.5, 2.5);
     next_duration_ = ends_on_time && until == latest_time ? std::max(next_duration_, duration * growth) : duration * growth;
     const double room_left = 0.8 * largest_log_step / std::max(std::abs(trial.log_density), 1e-300);
     next_duration_ = std::min(next_duration_, duration * std::max(room_left, 0.5));
@@ -231,7 +251,7 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
         rate_before_ = std::exchange(last_rate_, trial.log_density / duration);
         last_duration_ = duration;
     }
-    error_ += third_order_factor * std::abs(trial.log_density - trial.first_log_density) * std::abs(trial.log_density);
+    error_ += step_error(trial);
     StepRecord record;
     record.time = packing_.time();
     record.temperature = *packing_.working().temperature;

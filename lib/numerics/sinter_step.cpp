@@ -14,11 +14,11 @@ namespace {
 constexpr int most_newton = 60;
 constexpr int most_searches = 12;
 constexpr int most_conjugate_gradients = 5000;
+constexpr double rounding = 1e-6;           // error of a motion below which a direction that leads nowhere is made of rounding
 constexpr double overshoot = 0.5;          // slope left at the end of a Newton step, relative to its start, that asks for a line search
 constexpr double least_tangent = 0.1;      // of the tangent at a pair's own end of the step
 constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
 constexpr double tightest_linear = 1e-3;
-constexpr double predictor_tolerance = 20.0;  // of the first-order solution, over that of the step
 constexpr int most_factorisations = 2;     // in one minimisation; later the tangents hardly change
 constexpr double tolerance_share = 0.3;    // of the tolerance, that is left to linear solves
 constexpr double limit_stiffness = 10.0;   // of the springs at closing limits, over the mean tangent of the contacts
@@ -188,7 +188,7 @@ bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
         const double length = line_search(slope, motion);
         const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
         const double now = length < 1.0 ? error : (linear.residual + error) * error;
-        if (now < tolerance) return true;
+        if (now < tolerance || (length < 0.5 && error < rounding)) return true;
     }
     return false;
 }
@@ -228,7 +228,7 @@ void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion)
 StepReport SinterStep::first_order(const std::vector<PairStep>& step, Motion& motion) {
     StepReport report;
     start_geometry(step);
-    report.converged = minimise(step, predictor_tolerance * settings_.solver_tolerance, motion, report);
+    report.converged = minimise(step, settings_.first_tolerance, motion, report);
     remove_drift(step, motion);
     report.stress = strain_force_ / box_.volume();
     return report;
@@ -238,7 +238,7 @@ StepReport SinterStep::second_order(const std::vector<PairStep>& step, const Mot
     StepReport report;
     const Vec3 stretch = Vec3::Ones() + 0.5 * first.strain;
     midpoint_geometry(step, first);
-    report.converged = minimise(step, settings_.solver_tolerance, motion, report);
+    report.converged = minimise(step, settings_.second_tolerance, motion, report);
     remove_drift(step, motion);
     report.stress = strain_force_.cwiseProduct(stretch) / (box_.volume() * stretch.prod());
     return report;

@@ -33,7 +33,7 @@ struct PairStep {
 struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
-    double solver_tolerance = 1e-3;                   // relative error of a step's motion in the energy norm
+    double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
 };
 
 struct StepReport {
