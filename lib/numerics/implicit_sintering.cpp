@@ -19,11 +19,11 @@ constexpr double third_order_factor = 3.0;  // error of the second-order step ov
 constexpr double least_room = 0.7;          // factor to the length that meets the tolerance, of an accepted step
 constexpr double smallest_factor = 0.2;     // of a rejected step's length
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
-constexpr std::size_t small_packing = 1000;  // particles; solving closely costs nothing there
+constexpr std::size_t small_packing = 1000; // particles; solving closely costs nothing there
 constexpr double small_share = 1e-3;        // of the solver's tolerance
-constexpr double predictor_share = 20.0;     // tolerance of a first-order solution that only prepares the second, over that one's
-constexpr double harmless_share = 0.03;      // of the tolerance, change of density in a first-order step that needs no control
-constexpr double alone_share = 0.1;          // of that tolerance, for first-order steps, whose error falls with their length only slowly
+constexpr double predictor_share = 20.0;    // of the solver's tolerance, for a first-order solution that only prepares the second
+constexpr double alone_share = 0.1;         // of it, for first-order steps, whose error falls with their length only slowly
+constexpr double harmless_share = 0.03;     // of the tolerance, change of density in a first-order step that needs no control
 constexpr std::size_t most_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
@@ -42,18 +42,18 @@ ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& setti
 }
 
 double ImplicitSintering::first_duration() {
-    const std::vector<double> each(kinetics_.diffusion_at(kinetics_.schedule().highest()));
+    const std::vector<double> diffusion = kinetics_.diffusion_at(kinetics_.schedule().highest());
     double shortest = std::numeric_limits<double>::infinity(), overlap = 0.0;
     std::size_t contacts = 0;
-    std::vector<PairStep> steps;
     for (const Pair& pair : packing_.pairs()) {
-        steps.push_back(candidates_.pair_step(pair, each, 1.0));
-        if (steps.back().overlap < 0.0) continue;
-        overlap += steps.back().overlap / steps.back().reduced_radius;
+        const PairStep step = candidates_.pair_step(pair, diffusion, 1.0);
+        if (step.overlap < 0.0) continue;
+        overlap += step.overlap / step.reduced_radius;
         ++contacts;
     }
     if (contacts > 0) overlap /= static_cast<double>(contacts);
-    for (const PairStep& step : steps) {  // time in which a pair of mean overlap closes by first_closing
+    for (const Pair& pair : packing_.pairs()) {  // time in which a pair of mean overlap closes by first_closing
+        const PairStep step = candidates_.pair_step(pair, diffusion, 1.0);
         const double start = overlap * step.reduced_radius, end = start + 2.0 * first_closing * step.reduced_radius;
         if (step.cubic > 0.0)
             shortest = std::min(shortest, step.cubic * (end * end * end - start * start * start) / (3.0 * step.force));

@@ -24,10 +24,10 @@ class ImplicitSintering : public SinteringMethod {
         Motion motion, first_order;
         StepReport report;  // of the last solution
         bool converged = true;
-        double until = 0.0;                                 // s
+        double until = 0.0;        // s
         double log_density = 0.0;  // change over the step
         double difference = 0.0;   // between its two orders
-        bool leapt = false;                                 // further than any list of pairs reaches
+        bool leapt = false;        // further than any list of pairs reaches
     };
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
     /// What a trial step solves, on the pairs chosen last.
