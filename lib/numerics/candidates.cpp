@@ -13,7 +13,6 @@ namespace {
 constexpr double least_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
 constexpr double guess_margin = 2.0;   // of the closing that is guessed, that makes a candidate
 constexpr double harmless_overlap = 0.05;  // of the mean closing of contacts in a step, that a pair left out may reach
-constexpr double sticking_gap = 1e-6;  // of the reduced radius, between rigid particles that touch
 
 }  // namespace
 
@@ -28,10 +27,6 @@ double Candidates::end_overlap(const Pair& pair, const Motion& motion) const {
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pair.i)]);
     const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pair.j)]);
     return first + second - (vector + b - a + motion.strain.cwiseProduct(vector)).norm();
-}
-
-bool Candidates::rigid(const Pair& pair) const {
-    return kinetics_.any_rigid() && kinetics_.rigid(kinetics_.row(packing_.particles(), pair));
 }
 
 PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diffusion, double unit) const {
@@ -70,8 +65,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     for (std::size_t row = 0; row < list.size(); ++row) {
         const Pair& pair = list[row];
         const double start = overlap(pair);
-        const auto [first, second] = packing_.radii(pair);
-        if (rigid(pair) && start > -sticking_gap * physics::reduced_radius(first, second))
+        if (sticks(packing_, kinetics_, pair))
             kind[row] = 3;
         else if (start >= 0.0)
             kind[row] = 2;

@@ -40,7 +40,6 @@ class Candidates {
    private:
     double overlap(const Pair& pair) const;                               // m
     double end_overlap(const Pair& pair, const Motion& motion) const;     // m, after the motion
-    bool rigid(const Pair& pair) const;
 
     const Packing& packing_;
     const Kinetics& kinetics_;

@@ -4,15 +4,25 @@
 #include <string>
 #include <utility>
 
+#include "physics/sinter_contact.h"
+
 namespace kiln::numerics {
 
 namespace {
+
+constexpr double sticking_gap = 1e-6;  // of the reduced radius, between rigid particles that touch
 
 Vec3 shift_of(const Box& box, const PeriodicClusters::Offset& image) {
     return {image[0] * box.lengths[0], image[1] * box.lengths[1], image[2] * box.lengths[2]};
 }
 
 }  // namespace
+
+bool sticks(const Packing& packing, const Kinetics& kinetics, const Pair& pair) {
+    if (!kinetics.any_rigid() || !kinetics.rigid(kinetics.row(packing.particles(), pair))) return false;
+    const auto [first, second] = packing.radii(pair);
+    return packing.vector(pair).norm() - first - second < sticking_gap * physics::reduced_radius(first, second);
+}
 
 RigidClusters::RigidClusters(const Box& box, std::span<const Vec3> position, std::span<const Pair> sticking)
     : box_(box), single_(sticking.empty()), place_(position.begin(), position.end()) {

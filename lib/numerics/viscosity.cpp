@@ -62,11 +62,8 @@ Stiffness stiffness_of(const ContactNetwork& network, const Contacts& contacts) 
 
 std::vector<Pair> sticking_pairs(const Packing& packing, const Kinetics& kinetics) {
     std::vector<Pair> sticking;
-    for (const Pair& pair : packing.pairs()) {
-        const auto [first, second] = packing.radii(pair);
-        const std::size_t kind = kinetics.row(packing.particles(), pair);
-        if (kinetics.rigid(kind) && packing.vector(pair).norm() <= first + second) sticking.push_back(pair);
-    }
+    for (const Pair& pair : packing.pairs())
+        if (sticks(packing, kinetics, pair)) sticking.push_back(pair);
     return sticking;
 }
 
