@@ -11,22 +11,24 @@ std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-/// Keeps of all elastic fields only what they add up to now.
+/// Keeps of all elastic fields only what they add up to now, which must be the last equilibrium kept.
 void ContactProblem::start_anew() {
     Field sum{Vector(network_.nodes(), Vec6::Zero()), combine(true)};
-    for (std::size_t k = rigid_motions; k < fields_.size(); ++k) {
+    for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {
         add(amplitude_[static_cast<Eigen::Index>(k) + 1], fields_[k].displacement, sum.displacement);
     }
-    fields_.resize(rigid_motions);
-    const auto kept = static_cast<Eigen::Index>(rigid_motions) + 1;
-    closing_.conservativeResize(Eigen::NoChange, kept);
-    amplitude_.conservativeResize(kept);
-    stiffness_.conservativeResize(kept, kept);
+    fields_.resize(rigid_motions_);
+    const auto columns = static_cast<Eigen::Index>(rigid_motions_) + 1;
+    closing_.conservativeResize(Eigen::NoChange, columns);
+    sliding_.conservativeResize(Eigen::NoChange, columns);
+    amplitude_.conservativeResize(columns);
+    kept_.conservativeResize(columns);
+    stiffness_.conservativeResize(columns, columns);
     const double largest = largest_closing(sum.displacement);
     for (Vec6& each : sum.displacement) each /= largest;
     for (Vec6& each : sum.force) each /= largest;
     add_field(std::move(sum));
-    amplitude_[kept] = largest;
+    amplitude_[columns] = kept_[columns] = largest;
 }
 
 void ContactProblem::soften(std::size_t bond, double share, const PairContact& ends) {
@@ -43,8 +45,8 @@ void ContactProblem::soften(std::size_t bond, double share, const PairContact& e
         field.force[i] -= on_i.back();
         field.force[j] -= on_j.back();
     }
-    for (std::size_t a = rigid_motions; a < fields_.size(); ++a) {
-        for (std::size_t b = rigid_motions; b < fields_.size(); ++b) {
+    for (std::size_t a = rigid_motions_; a < fields_.size(); ++a) {
+        for (std::size_t b = rigid_motions_; b < fields_.size(); ++b) {
             stiffness_(static_cast<Eigen::Index>(a) + 1, static_cast<Eigen::Index>(b) + 1) -=
                 fields_[a].displacement[i].dot(on_i[b]) + fields_[a].displacement[j].dot(on_j[b]);
         }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/bond_motion.h"
 #include "physics/hertz.h"
@@ -29,40 +30,40 @@ ExplicitContacts::ExplicitContacts(const BondNetwork& network, std::vector<Elast
       tooling_(std::move(tooling)),
       friction_(friction),
       margin_(margin * network.rotation_length),
-      wall_stretch_(tooling_.contacts.size(), Vec3::Zero()),
-      wall_force_(tooling_.contacts.size(), 0.0) {
+      wall_grip_(tooling_.contacts.size()),
+      wall_force_(tooling_.contacts.size(), Vec3::Zero()) {
     search(Vector(network.nodes(), Vec6::Zero()));
 }
 
 /// Pairs near each other now; springs of pairs that were near before are kept.
 void ExplicitContacts::search(const Vector& displacement) {
     std::vector<PairContact> found = near_pairs(network_, spheres_, displacement, margin_);
-    std::vector<Vec3> stretch(found.size(), Vec3::Zero());
+    std::vector<physics::Grip> grip(found.size());
     std::size_t old = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
         const std::array key{found[k].i, found[k].j};
         while (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} < key) ++old;
-        if (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} == key) stretch[k] = pair_stretch_[old];
+        if (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} == key) grip[k] = pair_grip_[old];
     }
     pairs_ = std::move(found);
-    pair_stretch_ = std::move(stretch);
+    pair_grip_ = std::move(grip);
     overlap_.resize(pairs_.size());
     searched_at_ = displacement;
 }
 
 /// Moves the tangential spring along by `slide`, m, the way of the other surface against the sphere's; force on the sphere, N.
-Vec3 ExplicitContacts::held(const Touch& touch, const Vec3& slide, Vec3& stretch) {
+Vec3 ExplicitContacts::held(const Touch& touch, const Vec3& slide, physics::Grip& grip) {
     const double stiffness = physics::mindlin_stiffness(touch.shear_modulus, touch.radius, touch.overlap);
     const double limit = friction_ * physics::hertz_contact(touch.modulus, touch.radius, touch.overlap).force;
-    stretch += slide;
-    stretch -= stretch.dot(touch.normal) * touch.normal;
-    const double longest = limit / stiffness, length = stretch.norm();
-    if (length > longest) {
-        loss_ += limit * (length - longest);
-        stretch *= longest / length;
-    }
-    energy_ += 0.5 * stiffness * stretch.squaredNorm();
-    return stiffness * stretch;
+    const physics::Grip before = std::exchange(grip, {stiffness, physics::carried_stretch(grip, stiffness)});
+    loss_ += before.energy() - grip.energy();
+    grip.stretch += slide;
+    grip.stretch -= grip.stretch.dot(touch.normal) * touch.normal;
+    const double wanted = grip.stretch.norm();
+    grip.stretch = physics::held_stretch(grip.stretch, stiffness, limit);
+    loss_ += limit * (wanted - grip.stretch.norm());
+    energy_ += grip.energy();
+    return stiffness * grip.stretch;
 }
 
 void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force) {
@@ -75,7 +76,7 @@ void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& veloc
     }
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         if (overlap_[k] <= 0.0) {
-            pair_stretch_[k].setZero();
+            loss_ += std::exchange(pair_grip_[k], {}).energy();
             continue;
         }
         const PairContact& pair = pairs_[k];
@@ -88,7 +89,7 @@ void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& veloc
         ++touching_pairs_;
         if (friction_ > 0.0) {
             const Vec3 slide = dt * (surface_velocity(velocity[j], arm_j, length) - surface_velocity(velocity[i], arm_i, length));
-            on_i += held({normal, overlap_[k], pair.radius, pair.modulus, pair.shear_modulus}, slide, pair_stretch_[k]);
+            on_i += held({normal, overlap_[k], pair.radius, pair.modulus, pair.shear_modulus}, slide, pair_grip_[k]);
         }
         force[i].head<3>() += on_i;
         force[j].head<3>() -= on_i;
@@ -108,26 +109,25 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
         if (friction_ == 0.0) place[0] = network_.position[node][0];  // a roller goes along with what it carries
         const Vec3 towards(cylinder.x - place[0], 0.0, cylinder.z - (cylinder.punch ? travel : 0.0) - place[2]);
         const double distance = towards.norm(), overlap = cylinder.radius + contact.radius - distance;
-        wall_force_[c] = 0.0;
+        wall_force_[c].setZero();
         if (overlap <= 0.0) {
-            wall_stretch_[c].setZero();
+            loss_ += std::exchange(wall_grip_[c], {}).energy();
             continue;
         }
         const Vec3 normal = towards / distance, arm = contact.radius * normal;
         const physics::HertzContact hertz = physics::hertz_contact(contact.modulus, contact.radius, overlap);
         Vec3 on_sphere = -hertz.force * normal;
         energy_ += hertz.energy;
-        ++touching_walls_;
         if (friction_ > 0.0) {
             const Vec3 wall_velocity(0.0, 0.0, cylinder.punch ? -punch_velocity : 0.0);
             const Vec3 slide = dt * (wall_velocity - surface_velocity(velocity[node], arm, length));
-            on_sphere += held({normal, overlap, contact.radius, contact.modulus, contact.shear_modulus}, slide, wall_stretch_[c]);
+            on_sphere += held({normal, overlap, contact.radius, contact.modulus, contact.shear_modulus}, slide, wall_grip_[c]);
             force[node].tail<3>() += arm.cross(on_sphere) / length;
         } else {
             on_sphere[0] = 0.0;
         }
         force[node].head<3>() += on_sphere;
-        wall_force_[c] = std::abs(on_sphere[2]);
+        wall_force_[c] = on_sphere;
         if (cylinder.punch) punch_force_ -= on_sphere[2];
     }
 }
@@ -143,7 +143,7 @@ void ExplicitContacts::add_forces(const Vector& displacement, const Vector& velo
         if (farthest > margin_ * margin_ / 16.0) search(displacement);
     }
     punch_force_ = energy_ = 0.0;
-    touching_walls_ = touching_pairs_ = 0;
+    touching_pairs_ = 0;
     add_pairs(displacement, velocity, dt, force);
     add_walls(displacement, velocity, travel, punch_velocity, dt, force);
 }

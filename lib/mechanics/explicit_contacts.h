@@ -3,13 +3,14 @@
 
 #include "mechanics/particle_contacts.h"
 #include "mechanics/wall_contact.h"
+#include "physics/friction.h"
 
 namespace kiln::mechanics {
 
 /// Contacts of a body without periodic axes. The force across a contact is that of a spring between where the surfaces first stuck
 /// together and where they are, with Mindlin's stiffness at the overlap of the moment; the spring slips where its force would
-/// exceed the friction coefficient times the normal force. Without friction the cylinders are rollers that follow the body along x:
-/// only the vertical part of their forces acts.
+/// exceed the friction coefficient times the normal force (see physics/friction.h). Without friction the cylinders are rollers that
+/// follow the body along x: only the vertical part of their forces acts.
 class ExplicitContacts {
    public:
     /// The network must outlive the contacts.
@@ -23,9 +24,8 @@ class ExplicitContacts {
     double punch_force() const { return punch_force_; }  // N, downwards
     double energy() const { return energy_; }            // J, stored
     double friction_loss() const { return loss_; }       // J, since the beginning
-    /// Along z, N, of every contact with a cylinder, as they stand in the tooling.
-    const std::vector<double>& wall_forces() const { return wall_force_; }
-    std::size_t touching_walls() const { return touching_walls_; }
+    /// N, on the particles, of every contact with a cylinder, as they stand in the tooling.
+    const std::vector<Vec3>& wall_forces() const { return wall_force_; }
     std::size_t touching_pairs() const { return touching_pairs_; }
     /// Pairs that may touch, as of now.
     const std::vector<PairContact>& pairs() const { return pairs_; }
@@ -41,21 +41,20 @@ class ExplicitContacts {
     void add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force);
     void add_walls(const Vector& displacement, const Vector& velocity, double travel, double punch_velocity, double dt,
                    Vector& force);
-    Vec3 held(const Touch& touch, const Vec3& slide, Vec3& stretch);
+    Vec3 held(const Touch& touch, const Vec3& slide, physics::Grip& grip);
 
     const BondNetwork& network_;
     std::vector<ElasticSphere> spheres_;
     Tooling tooling_;
     double friction_, margin_;
     std::vector<PairContact> pairs_;
-    std::vector<double> overlap_;     // of the pairs, m
-    std::vector<Vec3> pair_stretch_;  // of the tangential springs, m
-    std::vector<Vec3> wall_stretch_;
-    std::vector<double> wall_force_;
+    std::vector<double> overlap_;  // of the pairs, m
+    std::vector<physics::Grip> pair_grip_, wall_grip_;
+    std::vector<Vec3> wall_force_;
     Vector searched_at_;  // displacements at the last search
     int steps_since_check_ = 0;
     double punch_force_ = 0.0, energy_ = 0.0, loss_ = 0.0;
-    std::size_t touching_walls_ = 0, touching_pairs_ = 0;
+    std::size_t touching_pairs_ = 0;
 };
 
 }  // namespace kiln::mechanics

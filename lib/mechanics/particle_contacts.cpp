@@ -44,7 +44,9 @@ PairContact contact_between(const BondNetwork& network, const std::vector<Elasti
             in_contact(a.radius, b.radius),
             in_contact(contact_modulus(a.young_modulus, a.poisson_ratio), contact_modulus(b.young_modulus, b.poisson_ratio)),
             in_contact(contact_shear_modulus(a.young_modulus, a.poisson_ratio),
-                       contact_shear_modulus(b.young_modulus, b.poisson_ratio))};
+                       contact_shear_modulus(b.young_modulus, b.poisson_ratio)),
+            a.radius,
+            b.radius};
 }
 
 std::vector<PairContact> near_pairs(const BondNetwork& network, const std::vector<ElasticSphere>& spheres,

@@ -20,11 +20,12 @@ std::vector<ElasticSphere> elastic_spheres(const State& state, const BondedBody&
 /// Two nodes without a bond. Spheres that overlap at rest touch there without force.
 struct PairContact {
     std::int32_t i, j;
-    Vec3 vector;           // m, from i to j at rest
-    double gap;            // m, at rest, zero or more
-    double radius;         // m, reduced
-    double modulus;        // Pa, contact modulus
-    double shear_modulus;  // Pa, the same for Mindlin's stiffness
+    Vec3 vector;                // m, from i to j at rest
+    double gap;                 // m, at rest, zero or more
+    double radius;              // m, reduced
+    double modulus;             // Pa, contact modulus
+    double shear_modulus;       // Pa, the same for Mindlin's stiffness
+    double radius_i, radius_j;  // m
 };
 
 /// The contact of two nodes, whether they are near each other or not.

@@ -4,16 +4,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/types.h"
+
 namespace kiln::mechanics {
 
-/// A particle that one of the rigid bodies may touch. Contacts act along z: rollers turn with the body, so that no horizontal force
-/// remains. Hertz force at the overlap along the normal, and its share along z.
+/// A particle that one of the rigid bodies may touch.
 struct WallContact {
     std::int32_t node;
     std::int32_t cylinder;
     bool punch;            // pressed from above by the punch, else from below by a support
     double gap;            // m, along z, at rest with the punch travel zero
-    double cosine;         // of the angle between the contact normal and z
+    Vec3 normal;           // from the cylinder to the particle where they touch
     double radius;         // m, of the particle
     double modulus;        // Pa, contact modulus
     double shear_modulus;  // Pa, the same for Mindlin's stiffness

@@ -66,6 +66,15 @@ PROGRAM
     run -2 "$BEND" --method dynamic --damping 1 "$BAR"
 }
 
+@test "--friction: less is stored than the punch works, the supports thrust, and unloading does not retrace loading" {
+    run -0 --separate-stderr "$BEND" --friction 0.3 --cycles 1 --points 12 "$BAR"
+    jq -e '.method == "static" and .friction == 0.3 and .energy.friction > 0 and .energy.error < 0.01 and .horizontal_reaction > 0
+           and .converged and .curve.punch[13] > 1.001 * .curve.punch[11]' <<<"$output"
+    run -0 --separate-stderr "$BEND" --cycles 1 "$BAR"
+    jq -e '.friction == 0 and .energy.friction == 0 and .horizontal_reaction == 0 and .curve.punch[7] == .curve.punch[5]' <<<"$output"
+    run -2 "$BEND" --friction -0.1 "$BAR"
+}
+
 @test "a strength of the bonds: the bar is loaded until it fails, and --states shows what broke" {
     run -0 --separate-stderr "$BEND" --tensile-strength 500MPa --shear-strength 1GPa --states "$BATS_TEST_TMPDIR/broken.kiln" --text "$BAR"
     jq -e '.strength | .bending_strength >= .first_break and .breaks > 1 and .tensile_strength == 5e8 and .until == 0.1' <<<"$output"

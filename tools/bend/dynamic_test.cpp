@@ -75,6 +75,7 @@ class Strokes {
             if (!load() || !unload()) return false;
         }
         result_.dynamic.energy = motion_.energy();
+        result_.friction_loss = result_.dynamic.energy.friction;
         result_.energy_error = energy_gap_ / (peak_energy_.bonds + peak_energy_.contacts);
         return true;
     }
@@ -159,10 +160,9 @@ void Strokes::keep_peak() {
     result_.peak.bond_energy = peak_energy_.bonds;
     result_.peak.contact_energy = peak_energy_.contacts;
     result_.loads = motion_.loads();
-    result_.held_span =
-        held_span(result_.specimen, find_contacts(result_.specimen, result_.fixture), motion_.contacts().wall_forces());
-    result_.contacts = motion_.contacts().touching_walls();
-    result_.closed_gaps = motion_.contacts().touching_pairs();
+    result_.peak.contact_force = motion_.contacts().wall_forces();
+    result_.peak.closed_gaps = motion_.contacts().touching_pairs();
+    read_contacts(result_, find_contacts(result_.specimen, result_.fixture), result_.peak);
 }
 
 /// Down until the punch stands still at about the wanted deflection: it turns early enough to stop there.
@@ -205,10 +205,7 @@ bool Strokes::unload() {
 }  // namespace
 
 Result bend_dynamic(State state, const Options& options, const Watch& watch) {
-    Result result;
-    result.specimen = cut_specimen(std::move(state), options.model);
-    result.fixture = place_fixture(result.specimen, options);
-    result.curve.push_back({0.0, 0.0, 0.0});
+    Result result = prepare(std::move(state), options);
     Strokes strokes(result, options, watch);
     strokes.run();
     return result;

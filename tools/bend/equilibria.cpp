@@ -21,11 +21,12 @@ std::vector<mechanics::PairContact> pairs_that_may_touch(const Specimen& specime
 
 }  // namespace
 
-Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, double tolerance)
-    : solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
-      problem_(specimen.body.network, &solver_, find_contacts(specimen, fixture).contacts, pairs_that_may_touch(specimen)),
+Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options)
+    : tooling_(find_contacts(specimen, fixture)),
+      solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
+      problem_(specimen.body.network, &solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction),
       gauge_(specimen, fixture),
-      tolerance_(tolerance) {}
+      tolerance_(options.tolerance) {}
 
 void Equilibria::seat(double greatest_force) { seat_ = problem_.seat(seating_share * greatest_force); }
 
@@ -43,7 +44,8 @@ Level Equilibria::solved(double force, double tolerance, Result& result) {
     result.iterations += last_.iterations;
     return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
             last_.punch_compliance,
-            last_.bond_energy + last_.contact_energy};
+            last_.bond_energy + last_.contact_energy,
+            last_.friction_loss};
 }
 
 }  // namespace kiln::bend

@@ -8,13 +8,14 @@ namespace kiln::bend {
 
 struct Level {
     Point point;
-    double compliance, energy;  // m/N, J
+    double compliance;    // m/N, of the punch
+    double energy, lost;  // J, stored; spent by friction since the beginning
 };
 
 /// Equilibria of one test; their iterations, residuals and convergence go to its result.
 class Equilibria {
    public:
-    Equilibria(const Specimen& specimen, const Fixture& fixture, double tolerance);
+    Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options);
 
     /// The bar seated by next to nothing of the greatest force (N): the zero of the punch's travel.
     void seat(double greatest_force);
@@ -24,7 +25,17 @@ class Equilibria {
 
     Level at(double force, Result& result);
 
+    /// The last equilibrium is one that the bar goes through: friction remembers it.
+    void keep() { problem_.keep(); }
+
+    /// The punch is lifted off: the bar starts anew.
+    void release() { problem_.release(); }
+
+    double friction_loss() const { return problem_.friction_loss(); }  // J, since the beginning
+
     mechanics::Equilibrium& last() { return last_; }
+
+    const mechanics::Tooling& tooling() const { return tooling_; }
 
     /// See mechanics::ContactProblem::soften.
     void soften(std::size_t bond, double share, const mechanics::PairContact& ends) { problem_.soften(bond, share, ends); }
@@ -32,6 +43,7 @@ class Equilibria {
    private:
     Level solved(double force, double tolerance, Result& result);
 
+    mechanics::Tooling tooling_;
     mechanics::ElasticSolver solver_;
     mechanics::ContactProblem problem_;
     Gauge gauge_;

@@ -43,7 +43,8 @@ void add_cylinder(mechanics::Tooling& tooling, const std::vector<Sphere>& sphere
                   double cylinder_radius, double side) {
     struct Candidate {
         const Sphere* sphere;
-        double height, cosine;  // height, m: of the cylinder's axis above the sphere's side when they touch
+        double height;  // m, of the cylinder's axis above the sphere's side when they touch
+        Vec3 normal;    // from the cylinder to the sphere
     };
     std::vector<Candidate> candidates;
     double foremost = -HUGE_VAL, largest = 0.0;
@@ -51,7 +52,8 @@ void add_cylinder(mechanics::Tooling& tooling, const std::vector<Sphere>& sphere
         const double distance = cylinder_radius + sphere.radius, offset = sphere.position[0] - x;
         const double cosine = std::sqrt(std::max(0.0, 1.0 - offset * offset / (distance * distance)));
         if (cosine < steepest_cosine) continue;
-        candidates.push_back({&sphere, side * sphere.position[2] + distance * cosine, cosine});
+        candidates.push_back(
+            {&sphere, side * sphere.position[2] + distance * cosine, Vec3(offset / distance, 0.0, -side * cosine)});
         foremost = std::max(foremost, candidates.back().height);
         largest = std::max(largest, sphere.radius);
     }
@@ -60,13 +62,13 @@ void add_cylinder(mechanics::Tooling& tooling, const std::vector<Sphere>& sphere
     }
     const auto cylinder = static_cast<std::int32_t>(tooling.cylinders.size());
     tooling.cylinders.push_back({x, side * foremost, cylinder_radius, side > 0.0});
-    for (const auto& [sphere, height, cosine] : candidates) {
+    for (const auto& [sphere, height, normal] : candidates) {
         const double gap = foremost - height;
         if (gap > contact_depth * specimen.size[2] + 2.0 * largest) continue;
         const Material& material = specimen.state.materials[static_cast<std::size_t>(sphere->material)];
         const double young = physics::required(material.young_modulus, material, "young_modulus");
         const double poisson = physics::required(material.poisson_ratio, material, "poisson_ratio");
-        tooling.contacts.push_back({sphere->node, cylinder, side > 0.0, gap, cosine, sphere->radius,
+        tooling.contacts.push_back({sphere->node, cylinder, side > 0.0, gap, normal, sphere->radius,
                                     physics::contact_modulus(young, poisson), physics::contact_shear_modulus(young, poisson)});
     }
 }
@@ -145,15 +147,23 @@ mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixtur
     return tooling;
 }
 
-double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const double> force) {
+double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const Vec3> force) {
     std::array<double, 3> moment{}, sum{};
     for (std::size_t c = 0; c < tooling.contacts.size(); ++c) {
         const mechanics::WallContact& contact = tooling.contacts[c];
         const auto cylinder = static_cast<std::size_t>(contact.cylinder);
-        moment[cylinder] += force[c] * specimen.body.network.position[static_cast<std::size_t>(contact.node)][0];
-        sum[cylinder] += force[c];
+        moment[cylinder] += force[c][2] * specimen.body.network.position[static_cast<std::size_t>(contact.node)][0];
+        sum[cylinder] += force[c][2];
     }
     return moment[1] / sum[1] - moment[0] / sum[0];
+}
+
+double thrust(const mechanics::Tooling& tooling, std::span<const Vec3> force) {
+    std::array<double, 3> along{};
+    for (std::size_t c = 0; c < tooling.contacts.size(); ++c) {
+        along[static_cast<std::size_t>(tooling.contacts[c].cylinder)] += force[c][0];
+    }
+    return 0.5 * (along[0] - along[1]);
 }
 
 Gauge::Gauge(const Specimen& specimen, const Fixture& fixture) {

@@ -33,8 +33,11 @@ double estimated_stiffness(const Specimen& specimen, const Fixture& fixture);
 /// Particles that a cylinder can come to touch; each cylinder just touches its nearest one. Throws Error if one finds none.
 mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture);
 
-/// Distance between the resultants of the two supports' forces (N, one a contact), m.
-double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const double> force);
+/// Distance between the resultants of the two supports' forces along z (N, one a contact, on the particle), m.
+double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const Vec3> force);
+
+/// Horizontal force of the supports that presses the bar together along x, their mean, N: that of friction.
+double thrust(const mechanics::Tooling& tooling, std::span<const Vec3> force);
 
 /// Reads a deflection from the displacements of nodes, m: the lower face under the load, downwards, against the mean of the
 /// cross-sections above the two supports. Local dents of the contacts hardly enter, rigid motions not at all.

@@ -21,10 +21,11 @@ constexpr const char* description =
 constexpr const char* footer =
     "Static: bonds are springs; particles touch the cylinders, and each other where a gap between them closes, by Hertz's law, and "
     "part\n"
-    "freely; there is no friction.\n"
-    "Dynamic: the same by leapfrog steps, with Mindlin's friction if wanted. Of the work of the punch it says what was stored and "
-    "what\n"
-    "was dissipated.\n"
+    "freely.\n"
+    "Dynamic: the same by leapfrog steps. Of the work of the punch it says what was stored and what was dissipated.\n"
+    "Both: with --friction contacts are also tangential springs (Mindlin) that slip (Coulomb). The bar then stores less than the "
+    "punch\n"
+    "works, unloading does not retrace loading, and the supports thrust it together (horizontal_reaction, N).\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
     "  bend --span 8um --punch-radius 2um --max-force 60uN --states bent.kiln bonded.kiln -o bend.json\n"
@@ -49,6 +50,12 @@ void Options::add_to(CLI::App& app) {
     app.add_option("--points", points, "points of the curve in each branch, at equal steps of force")
         ->check(CLI::Range(3, 1000))
         ->capture_default_str();
+    app.add_option(
+           "--friction", friction,
+           "coefficient of friction of all contacts (plain number): the cylinders are fixed against turning, and the bar slides "
+           "on them where the tangential force reaches this share of the normal one; 0: rollers")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
     cli::add_bond_model(app, model);
     app.add_option("--tolerance", tolerance,
                    "unbalanced force over contact force at which an equilibrium is reached (plain number)")
@@ -72,7 +79,7 @@ void Options::check(const CLI::App& app) const {
     for (const auto& [name, value] : quantities) {
         if (app.count(name) > 0 && !(value > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
     }
-    for (const char* name : {"--punch-velocity", "--damping", "--mass-scaling", "--friction"}) {
+    for (const char* name : {"--punch-velocity", "--damping", "--mass-scaling"}) {
         if (app.count(name) > 0 && method != Method::motion) throw CLI::ValidationError(name, "needs --method dynamic");
     }
     if (app.count("--until") > 0 && !to_failure()) {
@@ -107,9 +114,6 @@ void Options::add_dynamic(CLI::App& app) {
                       "the greatest deflection in 20 of the bar's own periods");
     app.add_option("--damping", damping, "share of the unbalanced force that brakes each particle, dynamic (plain number below 1)")
         ->check(CLI::Range(0.0, 0.99))
-        ->capture_default_str();
-    app.add_option("--friction", friction, "coefficient of friction of all contacts, dynamic (plain number); 0: cylinders roll")
-        ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
     app.add_option("--mass-scaling", mass_scaling,
                    "factor on the mass of the particles, dynamic (plain number); time steps and periods grow with its square root")

@@ -24,13 +24,11 @@ void add_motion(Json& json, const DynamicRun& run, const Options& options) {
     json["energy"].update(Json{{"work", run.energy.work},
                                {"stored_at_end", run.energy.bonds + run.energy.contacts},
                                {"kinetic_at_end", run.energy.kinetic},
-                               {"damping", run.energy.damping},
-                               {"friction", run.energy.friction}});
+                               {"damping", run.energy.damping}});
     json["time_step"] = run.time_step;
     json["steps"] = run.steps;
     json["punch_velocity"] = run.velocity;
     json["damping"] = options.damping;
-    json["friction"] = options.friction;
     json["mass_scaling"] = options.mass_scaling;
 }
 
@@ -77,6 +75,7 @@ Json document(const Result& result, const Options& options, Json history) {
               {"bond_law", physics::name_of(options.model.law)},
               {"bond_shear", physics::name_of(options.model.shear)},
               {"method", name_of(options.method)},
+              {"friction", options.friction},
               {"young_modulus", specimen.young_modulus},
               {"poisson_ratio", specimen.poisson_ratio},
               {"particles", specimen.body.particle.size()},
@@ -88,7 +87,11 @@ Json document(const Result& result, const Options& options, Json history) {
         force.push_back(point.force);
     }
     json["curve"] = {{"deflection", deflection}, {"punch", punch}, {"force", force}};
-    json["energy"] = {{"bonds", result.peak.bond_energy}, {"contacts", result.peak.contact_energy}, {"error", result.energy_error}};
+    json["horizontal_reaction"] = result.thrust;
+    json["energy"] = {{"bonds", result.peak.bond_energy},
+                      {"contacts", result.peak.contact_energy},
+                      {"friction", result.friction_loss},
+                      {"error", result.energy_error}};
     if (options.to_failure()) add_failure(json, result, options);
     if (options.method == Method::motion) {
         add_motion(json, result.dynamic, options);

@@ -31,11 +31,13 @@ struct Result {
     std::vector<mechanics::BondLoad> loads;  // of the bonds there
     double peak_force = 0.0;                 // N
     double held_span = 0.0;                  // m, between the supports' resultants under the greatest force
+    double thrust = 0.0;                     // N, there, see thrust() of fixture.h
     std::size_t contacts = 0;                // that carry force there
     std::size_t closed_gaps = 0;             // pairs without a bond that come to touch there
     int iterations = 0;                      // of the linear solver, in all
     double residual = 0.0;                   // greatest of all equilibria
-    double energy_error = 0.0;  // relative: work of the punch to the peak against the energy stored; dynamic: against all energy
+    double friction_loss = 0.0;              // J, in the whole test
+    double energy_error = 0.0;               // greatest gap between work of the punch and all energy, over that stored at the peak
     bool converged = true;
     DynamicRun dynamic;                // of the dynamic method
     std::size_t breaks = 0;            // of bonds, in a test to failure
@@ -43,6 +45,13 @@ struct Result {
     double failure_work = 0.0;         // J, of the punch in a test to failure
     double failure_stored = 0.0;       // J, at its end
 };
+
+/// The bar cut, its cylinders placed, and the point of the curve without load. Throws Error where the bar cannot be tested (see
+/// cut_specimen, place_fixture).
+Result prepare(State state, const Options& options);
+
+/// Takes what the contacts carry in an equilibrium as that of the greatest force.
+void read_contacts(Result& result, const mechanics::Tooling& tooling, const mechanics::Equilibrium& equilibrium);
 
 /// Called between equilibria with the share of the work done; false stops the test.
 using Watch = std::function<bool(double)>;

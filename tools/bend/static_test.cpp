@@ -1,4 +1,4 @@
-// static_test.cpp: force levels of the static test, each solved once, and the cycles made of them.
+// static_test.cpp: force levels of the static test and the cycles made of them; with friction, the way from one to the next.
 #include "tools/bend/static_test.h"
 
 #include <algorithm>
@@ -14,16 +14,31 @@ namespace {
 constexpr double deflection_tolerance = 1e-6;
 constexpr int most_trials = 12;
 
+/// The equilibrium under a force that has risen from nothing: at once if the bar is elastic, in the curve's steps if there is
+/// friction.
+Level loaded(Equilibria& levels, double force, bool exact, const Options& options, Result& result) {
+    const auto solved = [&](double share) {
+        return exact ? levels.at(share * force, result) : levels.trial(share * force, result);
+    };
+    if (options.friction == 0.0) return solved(1.0);
+    levels.release();
+    for (int point = 1; point < options.points; ++point) {
+        solved(static_cast<double>(point) / options.points);
+        levels.keep();
+    }
+    return solved(1.0);
+}
+
 /// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
-Level peak_level(Equilibria& levels, const Specimen& specimen, const Fixture& fixture, const Options& options, Result& result) {
+Level peak_level(Equilibria& levels, const Options& options, Result& result) {
     if (options.max_force > 0.0) {
         levels.seat(options.max_force);
-        return levels.at(options.max_force, result);
+        return loaded(levels, options.max_force, true, options, result);
     }
-    const double wanted = greatest_deflection(specimen, options);
-    double force = estimated_stiffness(specimen, fixture) * wanted;
+    const double wanted = greatest_deflection(result.specimen, options);
+    double force = estimated_stiffness(result.specimen, result.fixture) * wanted;
     levels.seat(force);
-    Level level = levels.trial(force, result);
+    Level level = loaded(levels, force, false, options, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
     double slope = level.point.force / level.point.deflection;
     bool exact = false;
@@ -34,7 +49,7 @@ Level peak_level(Equilibria& levels, const Specimen& specimen, const Fixture& fi
         if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the wanted deflection");
         const Level before = level;
         const bool was_exact = std::exchange(exact, std::abs(missing) <= std::sqrt(deflection_tolerance) * wanted);
-        level = exact ? levels.at(force, result) : levels.trial(force, result);
+        level = loaded(levels, force, exact, options, result);
         const double covered = level.point.deflection - before.point.deflection;
         if (exact == was_exact && covered != 0.0) slope = (level.point.force - before.point.force) / covered;
     }
@@ -53,6 +68,18 @@ double work(const std::vector<Level>& levels) {
     return sum;
 }
 
+/// Greatest gap between the work of the punch and the energy stored and lost, from the first level to each, over the most stored.
+double energy_gap(const std::vector<Level>& levels) {
+    double gap = 0.0, stored = 0.0;
+    for (std::size_t k = 1; k < levels.size(); ++k) {
+        const double gained = levels[k].energy - levels[0].energy, lost = levels[k].lost - levels[0].lost;
+        const std::vector<Level> way(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+        gap = std::max(gap, std::abs(work(way) - gained - lost));
+        stored = std::max(stored, gained);
+    }
+    return gap / stored;
+}
+
 /// The curve of all cycles: elastic, so that unloading retraces loading.
 std::vector<Point> cycled(const std::vector<Level>& levels, int cycles) {
     std::vector<Point> curve{{0.0, 0.0, 0.0}};
@@ -64,29 +91,51 @@ std::vector<Point> cycled(const std::vector<Level>& levels, int cycles) {
     return curve;
 }
 
+/// All cycles of an elastic bar, from the peak down: each level is solved once. False if the watch stopped it.
+bool cycle_elastic(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
+    std::vector<Level> levels{peak};
+    for (int point = options.points - 1; point > 0; --point) {
+        if (!watch(1.0 - static_cast<double>(point) / options.points)) return false;
+        levels.push_back(equilibria.at(peak.point.force * point / options.points, result));
+    }
+    std::reverse(levels.begin(), levels.end());
+    result.energy_error = energy_gap(levels);
+    result.curve = cycled(levels, options.cycles);
+    return true;
+}
+
+/// All cycles of a bar with friction, level by level. False if the watch stopped it.
+bool cycle_with_friction(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
+    equilibria.release();
+    const double before = equilibria.friction_loss();
+    for (int cycle = 0; cycle < options.cycles; ++cycle) {
+        std::vector<Level> levels;
+        for (int step = 1; step < 2 * options.points; ++step) {
+            if (!watch((cycle + 0.5 * step / options.points) / options.cycles)) return false;
+            const int point = std::min(step, 2 * options.points - step);
+            levels.push_back(equilibria.at(peak.point.force * point / options.points, result));
+            equilibria.keep();
+            result.curve.push_back(levels.back().point);
+        }
+        result.curve.push_back({0.0, 0.0, 0.0});
+        equilibria.release();
+        result.energy_error = std::max(result.energy_error, energy_gap(levels));
+    }
+    result.friction_loss = equilibria.friction_loss() - before;
+    return true;
+}
+
 }  // namespace
 
 Result bend_static(State state, const Options& options, const Watch& watch) {
-    Result result;
-    result.specimen = cut_specimen(std::move(state), options.model);
-    result.fixture = place_fixture(result.specimen, options);
-    Equilibria equilibria(result.specimen, result.fixture, options.tolerance);
-    std::vector<Level> levels{peak_level(equilibria, result.specimen, result.fixture, options, result)};
+    Result result = prepare(std::move(state), options);
+    Equilibria equilibria(result.specimen, result.fixture, options);
+    const Level peak = peak_level(equilibria, options, result);
     result.peak = std::move(equilibria.last());
-    result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),
-                                                             [](double force) { return force > 0.0; }));
-    result.held_span = held_span(result.specimen, find_contacts(result.specimen, result.fixture), result.peak.contact_force);
     result.loads = mechanics::bond_loads(result.specimen.body.network, result.peak.displacement);
-    result.closed_gaps = result.peak.closed_gaps;
-    const double greatest = levels.back().point.force;
-    for (int point = options.points - 1; point > 0; --point) {
-        if (!watch(1.0 - static_cast<double>(point) / options.points)) return result;
-        levels.push_back(equilibria.at(greatest * point / options.points, result));
-    }
-    std::reverse(levels.begin(), levels.end());
-    const double stored = levels.back().energy - levels.front().energy;
-    result.energy_error = std::abs(work(levels) - stored) / stored;
-    result.curve = cycled(levels, options.cycles);
+    read_contacts(result, equilibria.tooling(), result.peak);
+    const auto cycle = options.friction > 0.0 ? cycle_with_friction : cycle_elastic;
+    cycle(equilibria, peak, options, watch, result);
     return result;
 }
 

@@ -45,7 +45,7 @@ class Failure {
         : result_(result),
           options_(options),
           spheres_(mechanics::elastic_spheres(result.specimen.state, result.specimen.body)),
-          equilibria_(result.specimen, result.fixture, options.tolerance),
+          equilibria_(result.specimen, result.fixture, options),
           force_(estimated_stiffness(result.specimen, result.fixture) * greatest_deflection(result.specimen, options)) {
         result_.broken.assign(result.specimen.body.network.bonds(), 0);
         equilibria_.seat(force_);
@@ -89,9 +89,10 @@ class Failure {
         result_.failure_stored = level_.energy;
         if (here.force > result_.peak_force) {
             result_.peak_force = here.force;
-            const mechanics::Tooling tooling = find_contacts(result_.specimen, result_.fixture);
-            result_.held_span = held_span(result_.specimen, tooling, equilibria_.last().contact_force);
+            read_contacts(result_, equilibria_.tooling(), equilibria_.last());
         }
+        equilibria_.keep();
+        result_.friction_loss = level_.lost;
         result_.residual = std::max(result_.residual, equilibria_.last().residual);
         result_.converged = result_.converged && equilibria_.last().converged;
     }
@@ -131,18 +132,12 @@ class Failure {
 }  // namespace
 
 Result bend_to_failure(State state, const Options& options, const Watch& watch) {
-    Result result;
-    result.specimen = cut_specimen(std::move(state), options.model);
-    result.fixture = place_fixture(result.specimen, options);
-    result.curve.push_back({0.0, 0.0, 0.0});
+    Result result = prepare(std::move(state), options);
     Failure failure(result, options);
     while (failure.next()) {
         if (!watch(0.0)) return result;
     }
     result.peak = std::move(failure.last());
-    result.closed_gaps = result.peak.closed_gaps;
-    result.contacts = static_cast<std::size_t>(std::count_if(result.peak.contact_force.begin(), result.peak.contact_force.end(),
-                                                             [](double force) { return force > 0.0; }));
     return result;
 }
 
