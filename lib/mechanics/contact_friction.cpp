@@ -14,9 +14,9 @@ constexpr double limit_tolerance = 1e-11;  // change of a friction limit over th
 }  // namespace
 
 /// Minima for limits of friction that are taken anew from each; false if they go on changing.
-bool ContactProblem::settle(double force) {
+bool ContactProblem::settle(const Drive& drive) {
     if (!grips_.active()) {
-        minimise(force);
+        minimise(drive);
         return true;
     }
     if (rigid_motions_ == 3) {
@@ -25,14 +25,14 @@ bool ContactProblem::settle(double force) {
         add_rigid_motion(Vec3::Zero(), Vec3::UnitZ());
     }
     if (!gripped_) {
-        grips_.stick(force);
-        minimise(force);
+        grips_.stick(drive.force);
+        minimise(drive);
         gripped_ = true;
     }
     for (int pass = 0; pass < most_passes; ++pass) {
         const double change = grips_.follow(overlaps());
-        if (pass > 0 && change <= limit_tolerance * force) return true;
-        minimise(force);
+        if (pass > 0 && change <= limit_tolerance * drive.force) return true;
+        minimise(drive);
     }
     return false;
 }

@@ -18,6 +18,15 @@ constexpr double newton_tolerance = 1e-13;  // unbalanced force in the space ove
 
 std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
+/// Takes the punch out of the unknowns.
+void hold_punch(Eigen::VectorXd& gradient, Eigen::MatrixXd& matrix) {
+    gradient[0] = 0.0;
+    const double own = matrix(0, 0) > 0.0 ? matrix(0, 0) : 1.0;
+    matrix.row(0).setZero();
+    matrix.col(0).setZero();
+    matrix(0, 0) = own;
+}
+
 }  // namespace
 
 Eigen::VectorXd ContactProblem::overlaps() const {
@@ -67,19 +76,21 @@ Eigen::MatrixXd ContactProblem::curvature(const Forces& forces, const Eigen::Vec
 }
 
 /// Newton steps, damped (Levenberg & Marquardt) where the energy is flat or a full step does not lower it.
-void ContactProblem::minimise(double force) {
+void ContactProblem::minimise(const Drive& drive) {
     double damping = 1e-3;
+    const double pushed = drive.held ? 0.0 : drive.force;
     const auto energy = [&](const Forces& forces, const Eigen::VectorXd& amplitude) {
-        return forces.potential + bond_energy(amplitude) - force * amplitude[0];
+        return forces.potential + bond_energy(amplitude) - pushed * amplitude[0];
     };
     Forces forces = forces_at(amplitude_);
     double now = energy(forces, amplitude_);
     for (int step = 0; step < most_newton_steps; ++step) {
         Eigen::VectorXd gradient =
             closing_.transpose() * forces.force + sliding_.transpose() * forces.friction + stiffness_ * amplitude_;
-        gradient[0] -= force;
-        if (gradient.lpNorm<Eigen::Infinity>() <= newton_tolerance * force) return;
+        gradient[0] -= pushed;
         Eigen::MatrixXd matrix = curvature(forces, amplitude_);
+        if (drive.held) hold_punch(gradient, matrix);
+        if (gradient.lpNorm<Eigen::Infinity>() <= newton_tolerance * drive.force) return;
         const double scale = matrix.trace() / static_cast<double>(matrix.rows());
         matrix.diagonal().array() += damping * scale;
         const Eigen::VectorXd move = -matrix.ldlt().solve(gradient);
@@ -87,7 +98,7 @@ void ContactProblem::minimise(double force) {
         const Forces there = forces_at(moved);
         const double then = energy(there, moved);
         // Near the minimum the energy no longer tells; rounding is let pass.
-        if (then <= now + 1e-14 * force * std::abs(moved[0])) {
+        if (then <= now + 1e-14 * drive.force * std::abs(moved[0])) {
             amplitude_ = moved;
             forces = there;
             now = then;
@@ -112,7 +123,7 @@ void ContactProblem::touch_all(double force) {
 
 double ContactProblem::seat(double force) {
     touch_all(force);
-    minimise(force);
+    minimise({force});
     seated_ = amplitude_;
     release();
     return amplitude_[0];
@@ -140,9 +151,13 @@ Vector ContactProblem::unbalanced(const Forces& forces) const {
     return rest;
 }
 
-void ContactProblem::conclude(Equilibrium& state, const Forces& forces) const {
+void ContactProblem::conclude(Equilibrium& state, const Forces& forces, const Drive& drive) const {
     state.punch = amplitude_[0];
-    for (std::size_t c = 0; c < walls_; ++c) state.contact_force.push_back(force_on_node(forces, c));
+    for (std::size_t c = 0; c < walls_; ++c) {
+        state.contact_force.push_back(force_on_node(forces, c));
+        if (contacts_[c].punch && drive.held) state.punch_force -= state.contact_force.back()[2];
+    }
+    if (!drive.held) state.punch_force = drive.force;
     state.closed_gaps = static_cast<std::size_t>(std::count_if(forces.force.begin() + static_cast<std::ptrdiff_t>(walls_),
                                                                forces.force.end(), [](double f) { return f > 0.0; }));
     state.contact_energy = forces.energy + grips_.stored(slides());
@@ -152,10 +167,16 @@ void ContactProblem::conclude(Equilibrium& state, const Forces& forces) const {
 }
 
 Equilibrium ContactProblem::solve(double force, double tolerance) {
-    Equilibrium state;
     touch_all(force);
+    return search({force}, tolerance);
+}
+
+Equilibrium ContactProblem::relax(double force, double tolerance) { return search({force, true}, tolerance); }
+
+Equilibrium ContactProblem::search(const Drive& drive, double tolerance) {
+    Equilibrium state;
     while (true) {
-        const bool settled = settle(force);
+        const bool settled = settle(drive);
         const Forces forces = forces_at(amplitude_);
         const Vector rest = unbalanced(forces);
         state.residual = norm(rest) / forces.force.norm();
@@ -165,7 +186,7 @@ Equilibrium ContactProblem::solve(double force, double tolerance) {
         if (fields_.size() > fields) continue;
         state.displacement = combine(false);
         if (add_closed_pairs(state.displacement)) continue;
-        conclude(state, forces);
+        conclude(state, forces, drive);
         return state;
     }
 }

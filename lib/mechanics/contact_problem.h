@@ -14,6 +14,7 @@ namespace kiln::mechanics {
 struct Equilibrium {
     Vector displacement;              // of every node
     double punch = 0.0;               // m, travel of the punch downwards
+    double punch_force = 0.0;         // N, downwards
     double punch_compliance = 0.0;    // m/N, d punch / d force, friction's limits as they are
     std::vector<Vec3> contact_force;  // N, on the particle, one per wall contact
     std::size_t closed_gaps = 0;      // pairs without a bond that press each other
@@ -49,6 +50,9 @@ class ContactProblem {
     /// Equilibrium under a punch force > 0, N, until `residual` is at most `tolerance` or the space is full.
     Equilibrium solve(double force, double tolerance);
 
+    /// Equilibrium with the punch held where it is, such as after a bond broke; force: the last one, N, as a measure.
+    Equilibrium relax(double force, double tolerance);
+
     /// The last equilibrium counts as gone through: friction of those to come starts from there.
     void keep();
 
@@ -64,6 +68,11 @@ class ContactProblem {
    private:
     struct Field {
         Vector displacement, force;  // force: stiffness times displacement; empty for a rigid motion
+    };
+    /// What drives the punch.
+    struct Drive {
+        double force;  // N; of a punch that is held, only a measure
+        bool held = false;
     };
     /// Pushes a node, and another one (-1: a wall) the opposite way, when the gap is closed.
     struct Contact {
@@ -97,13 +106,14 @@ class ContactProblem {
     Forces forces_at(const Eigen::VectorXd& amplitude) const;
     Eigen::MatrixXd curvature(const Forces& forces, const Eigen::VectorXd& amplitude) const;
     double bond_energy(const Eigen::VectorXd& amplitude) const { return 0.5 * amplitude.dot(stiffness_ * amplitude); }
-    void minimise(double force);
-    bool settle(double force);
+    void minimise(const Drive& drive);
+    bool settle(const Drive& drive);
+    Equilibrium search(const Drive& drive, double tolerance);
     void touch_all(double force);
     Vector combine(bool forces) const;
     Vec3 force_on_node(const Forces& forces, std::size_t contact) const;
     Vector unbalanced(const Forces& forces) const;
-    void conclude(Equilibrium& state, const Forces& forces) const;
+    void conclude(Equilibrium& state, const Forces& forces, const Drive& drive) const;
 
     const BondNetwork& network_;
     ElasticSolver* solver_;

@@ -14,7 +14,6 @@
 #include "tools/bend/dynamic_test.h"
 #include "tools/bend/report.h"
 #include "tools/bend/static_test.h"
-#include "tools/bend/strength_test.h"
 
 using namespace kiln;
 using namespace kiln::bend;
@@ -265,16 +264,4 @@ TEST_CASE("gaps that close carry friction too") {
     CHECK(result.closed_gaps > 0);
     CHECK(result.converged);
     CHECK(result.energy_error < 0.02);
-}
-
-TEST_CASE("a bar with friction fails bond by bond; what is lost is more than what friction took") {
-    Options options;
-    options.tensile_strength = 300e6;
-    options.friction = 0.3;
-    options.until = 0.5;
-    const Result result = bend_to_failure(test::make_rough_bar({20, 4, 4}), options, no_stop);
-    CHECK(result.converged);
-    CHECK(result.breaks > 1);
-    CHECK(result.friction_loss > 0.0);
-    CHECK(result.failure_work - result.failure_stored > result.friction_loss);
 }

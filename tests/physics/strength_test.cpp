@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "physics/bending.h"
+#include "physics/hertz.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "tools/bend/equilibria.h"
@@ -82,11 +83,70 @@ TEST_CASE("breaks follow one another: each bond once, work is spent, broken bond
     std::sort(order.begin(), order.end());
     for (std::size_t k = 0; k < order.size(); ++k) CHECK(order[k] == static_cast<std::int32_t>(k) + 1);
     CHECK(order.size() == result.breaks);
-    CHECK(result.failure_work > result.failure_stored);
+    CHECK(result.failure.dissipated > 0.0);
+    CHECK(result.energy_error < 0.01);
     CHECK(result.curve.back().force <= 0.1 * result.peak_force);
     const State bent = bent_state(result, Json::array());
     CHECK(std::any_of(bent.bonds->other.begin(), bent.bonds->other.end(),
                       [](const NamedArray& each) { return each.name == "broken"; }));
+}
+
+TEST_CASE("a chain that breaks spends all that it stored: bonds F_t2/(2 k_t) + M2/(2 k_bend), contacts 2/5 F h") {
+    const State state = test::make_lattice({.cells = {11, 1, 1}, .periodic = false});
+    Options options = brittle();
+    options.span = 8e-7;
+    const Result result = failed(state, options);
+    const double F = result.curve[1].force, l = 1e-7;
+    const physics::BondStiffness& k = result.specimen.body.network.stiffness.front();
+    double stored = 0.0;
+    for (int bond = 0; bond < 4; ++bond) {
+        const double moment = F / 2.0 * (bond + 0.5) * l;
+        stored += 2.0 * (F * F / 4.0 / (2.0 * k.shear) + moment * moment / (2.0 * k.bending));
+    }
+    const Material& alumina = state.materials.front();
+    const double modulus = physics::contact_modulus(*alumina.young_modulus, *alumina.poisson_ratio);
+    const double radius = state.particles.radius.front();
+    for (const double force : {F, F / 2.0, F / 2.0}) stored += 0.4 * force * physics::hertz_overlap(modulus, radius, force);
+    CHECK(result.failure.dissipated == relative(stored, 1e-6));
+    CHECK(result.failure.work == relative(stored, 1e-6));
+    CHECK(result.failure.stored == 0.0);
+}
+
+TEST_CASE("what breaks dissipate is what bars with and without the bond store under a punch at the same place, each solved alone") {
+    Options options = brittle();
+    options.until = 0.7;
+    const Result result = failed(test::make_rough_bar({20, 4, 4}), options);
+    REQUIRE(result.breaks >= 3);
+    CHECK(result.energy_error < 0.01);
+    Options exact = options;
+    exact.tolerance = 1e-8;
+    Result alone;
+    alone.specimen = cut_specimen(test::make_rough_bar({20, 4, 4}), options.model);
+    alone.fixture = result.fixture;
+    const mechanics::BondNetwork& network = alone.specimen.body.network;
+    const auto spheres = mechanics::elastic_spheres(alone.specimen.state, alone.specimen.body);
+    // J, after so many breaks, from the force (N) of one of them.
+    const auto energy_at = [&](double punch, double force, std::size_t breaks) {
+        Equilibria bar(alone.specimen, alone.fixture, exact);
+        bar.seat(force);
+        for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
+            const std::int32_t place = result.broken[bond];
+            if (place == 0 || place > static_cast<std::int32_t>(breaks)) continue;
+            bar.soften(bond, 1e-6, mechanics::contact_between(network, spheres, network.pair[bond][0], network.pair[bond][1]));
+        }
+        for (int trial = 0; trial < 20; ++trial) {
+            const Level level = bar.at(force, alone);
+            if (std::abs(level.point.punch - punch) <= 1e-7 * punch) return level.energy;
+            force += (punch - level.point.punch) / level.compliance;
+        }
+        return 0.0;
+    };
+    double dissipated = 0.0;
+    for (std::size_t next = 1; next <= result.breaks; ++next) {
+        const Point& here = result.curve[next];
+        dissipated += energy_at(here.punch, here.force, next - 1) - energy_at(here.punch, here.force, next);
+    }
+    CHECK(result.failure.dissipated == relative(dissipated, 1e-3));
 }
 
 TEST_CASE("bending strength does not depend on the scale, and doubles with the bonds' where contacts stay as they are") {

@@ -8,7 +8,7 @@ namespace kiln::bend {
 namespace {
 
 constexpr double seating_share = 1e-9;    // of the greatest force
-constexpr double trial_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
+constexpr double loose_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
 constexpr double watched_gap = 0.2;       // of the mean radius: wider gaps do not close under small deflections
 
 /// Pairs without a bond so near that they may come to touch in the test.
@@ -21,6 +21,17 @@ std::vector<mechanics::PairContact> pairs_that_may_touch(const Specimen& specime
 
 }  // namespace
 
+double work_of_punch(std::span<const Level> levels) {
+    double sum = levels.back().point.force * levels.back().point.punch - levels.front().point.force * levels.front().point.punch;
+    for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+        const Level& a = levels[k];
+        const Level& b = levels[k + 1];
+        const double step = b.point.force - a.point.force;
+        sum -= step * (a.point.punch + b.point.punch) / 2.0 + step * step / 12.0 * (a.compliance - b.compliance);
+    }
+    return sum;
+}
+
 Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options)
     : tooling_(find_contacts(specimen, fixture)),
       solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
@@ -30,19 +41,23 @@ Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const O
 
 void Equilibria::seat(double greatest_force) { seat_ = problem_.seat(seating_share * greatest_force); }
 
-Level Equilibria::trial(double force, Result& result) { return solved(force, std::max(trial_tolerance, tolerance_), result); }
+double Equilibria::trial_tolerance() const { return std::max(loose_tolerance, tolerance_); }
+
+Level Equilibria::trial(double force, Result& result) { return level_of(problem_.solve(force, trial_tolerance()), result); }
+
+Level Equilibria::relaxed(Result& result) { return level_of(problem_.relax(last_.punch_force, trial_tolerance()), result); }
 
 Level Equilibria::at(double force, Result& result) {
-    const Level level = solved(force, tolerance_, result);
+    const Level level = level_of(problem_.solve(force, tolerance_), result);
     result.residual = std::max(result.residual, last_.residual);
     result.converged = result.converged && last_.converged;
     return level;
 }
 
-Level Equilibria::solved(double force, double tolerance, Result& result) {
-    last_ = problem_.solve(force, tolerance);
+Level Equilibria::level_of(mechanics::Equilibrium equilibrium, Result& result) {
+    last_ = std::move(equilibrium);
     result.iterations += last_.iterations;
-    return {{gauge_.read(last_.displacement), last_.punch - seat_, force},
+    return {{gauge_.read(last_.displacement), last_.punch - seat_, last_.punch_force},
             last_.punch_compliance,
             last_.bond_energy + last_.contact_energy,
             last_.friction_loss};

@@ -12,6 +12,9 @@ struct Level {
     double energy, lost;  // J, stored; spent by friction since the beginning
 };
 
+/// Work of the punch from the first level to the last, J. Travel is a cubic between forces (Hermite), from its values and slopes.
+double work_of_punch(std::span<const Level> levels);
+
 /// Equilibria of one test; their iterations, residuals and convergence go to its result.
 class Equilibria {
    public:
@@ -24,6 +27,9 @@ class Equilibria {
     Level trial(double force, Result& result);
 
     Level at(double force, Result& result);
+
+    /// The bar with the punch held where it is in the last equilibrium, as exact as trials.
+    Level relaxed(Result& result);
 
     /// The last equilibrium is one that the bar goes through: friction remembers it.
     void keep() { problem_.keep(); }
@@ -41,7 +47,8 @@ class Equilibria {
     void soften(std::size_t bond, double share, const mechanics::PairContact& ends) { problem_.soften(bond, share, ends); }
 
    private:
-    Level solved(double force, double tolerance, Result& result);
+    double trial_tolerance() const;
+    Level level_of(mechanics::Equilibrium equilibrium, Result& result);
 
     mechanics::Tooling tooling_;
     mechanics::ElasticSolver solver_;

@@ -90,6 +90,7 @@ void Options::check(const CLI::App& app) const {
     for (const char* name : {"--max-deflection", "--max-force", "--cycles", "--points"}) {
         if (app.count(name) > 0) throw CLI::ValidationError(name, "has no meaning in a test to failure");
     }
+    if (friction > 0.0) throw CLI::ValidationError("--friction", "must be 0 in a test to failure: its cylinders are rollers");
 }
 
 void Options::add_strength(CLI::App& app) {

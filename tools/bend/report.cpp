@@ -42,8 +42,7 @@ void add_failure(Json& json, const Result& result, const Options& options) {
                         {"tensile_strength", options.tensile_strength > 0.0 ? Json(options.tensile_strength) : Json()},
                         {"shear_strength", options.shear_strength > 0.0 ? Json(options.shear_strength) : Json()},
                         {"until", options.until}};
-    json["energy"].erase("error");
-    json["energy"].update(Json{{"work", result.failure_work}, {"dissipated", result.failure_work - result.failure_stored}});
+    json["energy"].update(Json{{"work", result.failure.work}, {"dissipated", result.failure.dissipated}});
 }
 
 }  // namespace

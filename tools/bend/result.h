@@ -23,6 +23,13 @@ struct DynamicRun {
     mechanics::MotionEnergy energy;  // J, at the end
 };
 
+/// Of a test to failure in which the punch stands still whenever a bond breaks, J.
+struct FailureEnergy {
+    double work = 0.0;        // of the punch
+    double stored = 0.0;      // at the end
+    double dissipated = 0.0;  // by breaks: what was stored before each of them less what was after it
+};
+
 struct Result {
     Specimen specimen;
     Fixture fixture;
@@ -42,8 +49,7 @@ struct Result {
     DynamicRun dynamic;                // of the dynamic method
     std::size_t breaks = 0;            // of bonds, in a test to failure
     std::vector<std::int32_t> broken;  // for each bond its place in the order of breaks, from 1; 0 for a whole one
-    double failure_work = 0.0;         // J, of the punch in a test to failure
-    double failure_stored = 0.0;       // J, at its end
+    FailureEnergy failure;
 };
 
 /// The bar cut, its cylinders placed, and the point of the curve without load. Throws Error where the bar cannot be tested (see

@@ -56,25 +56,13 @@ Level peak_level(Equilibria& levels, const Options& options, Result& result) {
     throw Error("no punch force was found that gives the wanted deflection");
 }
 
-/// Work of the punch from the first level to the last, J. Travel is a cubic between forces (Hermite), from its values and slopes.
-double work(const std::vector<Level>& levels) {
-    double sum = levels.back().point.force * levels.back().point.punch - levels.front().point.force * levels.front().point.punch;
-    for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
-        const Level& a = levels[k];
-        const Level& b = levels[k + 1];
-        const double step = b.point.force - a.point.force;
-        sum -= step * (a.point.punch + b.point.punch) / 2.0 + step * step / 12.0 * (a.compliance - b.compliance);
-    }
-    return sum;
-}
-
 /// Greatest gap between the work of the punch and the energy stored and lost, from the first level to each, over the most stored.
 double energy_gap(const std::vector<Level>& levels) {
     double gap = 0.0, stored = 0.0;
     for (std::size_t k = 1; k < levels.size(); ++k) {
         const double gained = levels[k].energy - levels[0].energy, lost = levels[k].lost - levels[0].lost;
         const std::vector<Level> way(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-        gap = std::max(gap, std::abs(work(way) - gained - lost));
+        gap = std::max(gap, std::abs(work_of_punch(way) - gained - lost));
         stored = std::max(stored, gained);
     }
     return gap / stored;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "mechanics/connectivity.h"
 #include "tools/bend/equilibria.h"
@@ -59,8 +60,12 @@ class Failure {
         if (++result_.breaks == most_breaks)
             throw Error("the bar did not fail although " + std::to_string(most_breaks) + " bonds broke");
         crack(weakest.bond);
-        if (holds()) return true;
+        if (holds()) {
+            relax();
+            return true;
+        }
         result_.curve.push_back({level_.point.deflection, level_.point.punch, 0.0});
+        result_.failure.dissipated += std::exchange(result_.failure.stored, 0.0);
         return false;
     }
 
@@ -80,21 +85,24 @@ class Failure {
         throw Error("no punch force was found at which the next bond breaks");
     }
 
-    /// Takes the point to the curve and to the work of the punch: trapezia between the points, in which the bar is nearly linear.
+    /// Takes the point to the curve and to the balance of energy. Up to the first break the bar is elastic: it stores the work.
     void account() {
-        const Point before = result_.curve.back();
         const Point& here = level_.point;
+        result_.failure.work += result_.breaks == 0 ? level_.energy : work_of_punch(std::array{relaxed_, level_});
+        result_.failure.stored = level_.energy;
         result_.curve.push_back(here);
-        result_.failure_work += 0.5 * (before.force + here.force) * (here.punch - before.punch);
-        result_.failure_stored = level_.energy;
         if (here.force > result_.peak_force) {
             result_.peak_force = here.force;
             read_contacts(result_, equilibria_.tooling(), equilibria_.last());
         }
-        equilibria_.keep();
-        result_.friction_loss = level_.lost;
         result_.residual = std::max(result_.residual, equilibria_.last().residual);
         result_.converged = result_.converged && equilibria_.last().converged;
+    }
+
+    /// The punch stands still as a bond breaks: what is stored no more is spent.
+    void relax() {
+        relaxed_ = equilibria_.relaxed(result_);
+        result_.failure.dissipated += level_.energy - relaxed_.energy;
     }
 
     /// True while a piece that whole bonds hold together reaches from support to support.
@@ -126,7 +134,7 @@ class Failure {
     std::vector<mechanics::ElasticSphere> spheres_;
     Equilibria equilibria_;
     double force_;
-    Level level_{};
+    Level level_{}, relaxed_{};  // as the last bond broke; after it, under the punch that stands still
 };
 
 }  // namespace
@@ -137,6 +145,8 @@ Result bend_to_failure(State state, const Options& options, const Watch& watch) 
     while (failure.next()) {
         if (!watch(0.0)) return result;
     }
+    FailureEnergy& energy = result.failure;
+    result.energy_error = std::abs(energy.work - energy.stored - energy.dissipated) / energy.work;
     result.peak = std::move(failure.last());
     return result;
 }
