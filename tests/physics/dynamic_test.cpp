@@ -85,6 +85,14 @@ TEST_CASE("mass scaled by 16: four times the time step and a quarter of the defa
     CHECK(unloading_slope(scaled) == unloading_slope(usual));
 }
 
+TEST_CASE("the dynamic slope does not depend on the scale, from 1 nm to 1 m") {
+    const double slope = unloading_slope(bend_dynamic(test::make_rough_bar({12, 3, 3}), dynamic_options(), no_stop));
+    for (const double edge : {1e-9, 1.0}) {
+        const Result scaled = bend_dynamic(test::make_rough_bar({12, 3, 3}, edge), dynamic_options(), no_stop);
+        CHECK(unloading_slope(scaled) == relative(edge / 1e-7 * slope, 1e-3));  // rounding decides at which step a point is read
+    }
+}
+
 TEST_CASE("friction at the cylinders stiffens the bar and takes energy, and the balance holds") {
     const State state = test::make_lattice({.cells = {14, 3, 3}});
     Options rough = dynamic_options();

@@ -1,5 +1,6 @@
 // lattice_test.cpp: elastic constants of regular lattices of bonds against closed forms.
 #include <doctest/doctest.h>
+#include <omp.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -70,6 +71,20 @@ TEST_CASE("a disordered cell: symmetric tensor below the affine bound, the same 
         CHECK((other.stiffness - tensor.stiffness).norm() <= 1e-9 * tensor.stiffness.norm());
         CHECK(other.iterations == tensor.iterations);
     }
+}
+
+TEST_CASE("an elastic tensor: the same bytes for any number of threads") {
+    const State state = test::make_rough_bar({14, 14, 14});
+    const BondNetwork network = bonded_body(state, {}).network;
+    const int threads = omp_get_max_threads();
+    std::vector<Mat6> tensors;
+    for (const int count : {1, 2, 3}) {
+        omp_set_num_threads(count);
+        tensors.push_back(elastic_tensor(network, state.box.volume(), 1e-8).stiffness);
+    }
+    omp_set_num_threads(threads);
+    CHECK(tensors[0] == tensors[1]);
+    CHECK(tensors[0] == tensors[2]);
 }
 
 TEST_CASE("averages of an isotropic tensor are its own constants; of a cubic one, Zener's ratio decides the anisotropy") {
