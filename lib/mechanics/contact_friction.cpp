@@ -9,7 +9,7 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr int most_passes = 200;
-constexpr double limit_tolerance = 1e-11;  // change of a friction limit over the punch force
+constexpr double limit_tolerance = 1e-9;  // change of a friction limit over the punch force
 
 }  // namespace
 

@@ -55,7 +55,7 @@ ContactProblem::Forces ContactProblem::forces_at(const Eigen::VectorXd& amplitud
     return result;
 }
 
-/// Sum over the contacts that carry force; not a matrix product, whose order of summation would depend on the number of threads.
+/// Sum over the contacts that carry force; not one matrix product, whose order of summation would depend on the number of threads.
 Eigen::MatrixXd ContactProblem::curvature(const Forces& forces, const Eigen::VectorXd& amplitude) const {
     Eigen::MatrixXd matrix = stiffness_;
     for (Eigen::Index c = 0; c < closing_.rows(); ++c) {
@@ -67,10 +67,8 @@ Eigen::MatrixXd ContactProblem::curvature(const Forces& forces, const Eigen::Vec
         const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = sliding_.middleRows<3>(3 * c);
         const Eigen::Matrix3d gradient = grips_.potential(at(c), rows * amplitude).gradient;
         if (gradient.isZero(0.0)) continue;
-        for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
-            const Vec3 pull = gradient * rows.col(k);
-            for (Eigen::Index l = 0; l < matrix.rows(); ++l) matrix(l, k) += rows.col(l).dot(pull);
-        }
+        const Eigen::Matrix<double, 3, Eigen::Dynamic> pull = gradient * rows;
+        matrix += rows.transpose().lazyProduct(pull);
     }
     return matrix;
 }
