@@ -164,9 +164,11 @@ def draw_cost(axes, rows, key, label):
     places = [row[key] for row in rows]
     axes.loglog(places, [row["seconds"] for row in rows], "o-", color=LINE, label="wall time, s", markersize=4)
     axes.loglog(places, [row["iterations"] for row in rows], "s-", color=ACCENT, label="iterations, all forces", markersize=4)
+    axes.loglog(places, [row["peak_bytes"] / 1e9 for row in rows], "^-", color=REFERENCE, label="peak memory, GB", markersize=4)
+    if max(places) < 100:
+        axes.set_xticks(places, [f"{place:.3g}" for place in places])
+        axes.minorticks_off()
     axes.set_xlabel(label)
-    if key == "particles":
-        axes.loglog(places, [row["peak_bytes"] / 1e9 for row in rows], "^-", color=REFERENCE, label="peak memory, GB", markersize=4)
     axes.legend()
 
 
@@ -181,16 +183,16 @@ def draw_tolerances(axes, rows):
 
 def draw_methods(axes, rows):
     by_velocity = [row for row in rows if row["damping"] == 0.7]
-    by_damping = [row for row in rows if row["velocity_factor"] == 1]
-    for points, colour, key, label in ((by_velocity, LINE, "velocity_factor", "velocity of the punch, of the default"),
-                                       (by_damping, ACCENT, "damping", "damping")):
+    by_damping = [row for row in rows if row["damping"] != 0.7]
+    for points, colour, key, label in ((by_velocity, LINE, "velocity_factor", "velocity of the punch, 1 by default"),
+                                       (by_damping, ACCENT, "damping", "damping, 0.7 by default")):
         axes.loglog([row["seconds"] for row in points], [abs(row["slope_error"]) for row in points], "o", color=colour, label=label,
                     markersize=4)
         for row in points:
             axes.annotate(f"{row[key]:g}", (row["seconds"], abs(row["slope_error"])), xytext=(3, 3), textcoords="offset points",
                           fontsize=7, color=colour)
-    axes.set(xlabel="wall time, s", ylabel="slope, against static")
-    axes.legend()
+    axes.set(xlabel="wall time, s", ylabel="error of the slope, against static")
+    axes.legend(loc="lower left")
 
 
 def draw_thickness(axes, rows):
