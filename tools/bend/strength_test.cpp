@@ -71,6 +71,12 @@ class Failure {
 
     mechanics::Equilibrium& last() { return equilibria_.last(); }
 
+    /// Gap between the work of the punch and all energy, over the most that was stored.
+    double energy_gap() const {
+        const FailureEnergy& energy = result_.failure;
+        return std::abs(energy.work - energy.stored - energy.dissipated) / most_stored_;
+    }
+
    private:
     /// The equilibrium in which the weakest bond has just reached its strength: stresses grow nearly as the force.
     Weakest load() {
@@ -90,6 +96,7 @@ class Failure {
         const Point& here = level_.point;
         result_.failure.work += result_.breaks == 0 ? level_.energy : work_of_punch(std::array{relaxed_, level_});
         result_.failure.stored = level_.energy;
+        most_stored_ = std::max(most_stored_, level_.energy);
         result_.curve.push_back(here);
         if (here.force > result_.peak_force) {
             result_.peak_force = here.force;
@@ -134,6 +141,7 @@ class Failure {
     std::vector<mechanics::ElasticSphere> spheres_;
     Equilibria equilibria_;
     double force_;
+    double most_stored_ = 0.0;   // J
     Level level_{}, relaxed_{};  // as the last bond broke; after it, under the punch that stands still
 };
 
@@ -145,8 +153,7 @@ Result bend_to_failure(State state, const Options& options, const Watch& watch) 
     while (failure.next()) {
         if (!watch(0.0)) return result;
     }
-    FailureEnergy& energy = result.failure;
-    result.energy_error = std::abs(energy.work - energy.stored - energy.dissipated) / energy.work;
+    result.energy_error = failure.energy_gap();
     result.peak = std::move(failure.last());
     return result;
 }
