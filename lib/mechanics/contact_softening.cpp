@@ -11,7 +11,7 @@ std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-/// Keeps of all elastic fields only what they add up to now, which must be the last equilibrium kept.
+/// Keeps of all elastic fields only what they add up to now. Contacts without friction need no more of the past.
 void ContactProblem::start_anew() {
     Field sum{Vector(network_.nodes(), Vec6::Zero()), combine(true)};
     for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {

@@ -61,8 +61,7 @@ double energy_gap(const std::vector<Level>& levels) {
     double gap = 0.0, stored = 0.0;
     for (std::size_t k = 1; k < levels.size(); ++k) {
         const double gained = levels[k].energy - levels[0].energy, lost = levels[k].lost - levels[0].lost;
-        const std::vector<Level> way(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-        gap = std::max(gap, std::abs(work_of_punch(way) - gained - lost));
+        gap = std::max(gap, std::abs(work_of_punch(std::span(levels).first(k + 1)) - gained - lost));
         stored = std::max(stored, gained);
     }
     return gap / stored;
@@ -79,27 +78,26 @@ std::vector<Point> cycled(const std::vector<Level>& levels, int cycles) {
     return curve;
 }
 
-/// All cycles of an elastic bar, from the peak down: each level is solved once. False if the watch stopped it.
-bool cycle_elastic(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
+/// All cycles of an elastic bar, from the peak down, unless the watch stops it: each level is solved once.
+void cycle_elastic(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
     std::vector<Level> levels{peak};
     for (int point = options.points - 1; point > 0; --point) {
-        if (!watch(1.0 - static_cast<double>(point) / options.points)) return false;
+        if (!watch(1.0 - static_cast<double>(point) / options.points)) return;
         levels.push_back(equilibria.at(peak.point.force * point / options.points, result));
     }
     std::reverse(levels.begin(), levels.end());
     result.energy_error = energy_gap(levels);
     result.curve = cycled(levels, options.cycles);
-    return true;
 }
 
-/// All cycles of a bar with friction, level by level. False if the watch stopped it.
-bool cycle_with_friction(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
+/// All cycles of a bar with friction, level by level, unless the watch stops it.
+void cycle_with_friction(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
     equilibria.release();
     const double before = equilibria.friction_loss();
     for (int cycle = 0; cycle < options.cycles; ++cycle) {
         std::vector<Level> levels;
         for (int step = 1; step < 2 * options.points; ++step) {
-            if (!watch((cycle + 0.5 * step / options.points) / options.cycles)) return false;
+            if (!watch((cycle + 0.5 * step / options.points) / options.cycles)) return;
             const int point = std::min(step, 2 * options.points - step);
             levels.push_back(equilibria.at(peak.point.force * point / options.points, result));
             equilibria.keep();
@@ -110,7 +108,6 @@ bool cycle_with_friction(Equilibria& equilibria, const Level& peak, const Option
         result.energy_error = std::max(result.energy_error, energy_gap(levels));
     }
     result.friction_loss = equilibria.friction_loss() - before;
-    return true;
 }
 
 }  // namespace

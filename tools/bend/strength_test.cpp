@@ -109,6 +109,7 @@ class Failure {
     /// The punch stands still as a bond breaks: what is stored no more is spent.
     void relax() {
         relaxed_ = equilibria_.relaxed(result_);
+        result_.converged = result_.converged && equilibria_.last().converged;
         result_.failure.dissipated += level_.energy - relaxed_.energy;
     }
 
