@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <new>
+#include <set>
 
 #include "io/files.h"
 
@@ -35,9 +37,9 @@ void watch_signals() {
 struct Finished {};
 
 /// Options that change where or how a result is written, not the result.
-constexpr std::array without_bearing{"--help",  "--version", "--config",  "--output", "--text",
-                                     "--quiet", "--verbose", "--threads", "--history", "--states", "--checkpoint", "--checkpoint-every",
-                                     "--resume", "files"};
+constexpr std::array without_bearing{"--help",    "--version", "--config", "--output",     "--text",
+                                     "--quiet",   "--verbose", "--threads", "--history",   "--states",
+                                     "--resume",  "files",     "--checkpoint", "--checkpoint-every"};
 
 /// The text without line ends and what else a terminal would act on; names in it come from files.
 std::string one_line(std::string text) {
@@ -102,6 +104,17 @@ int run(const std::string& tool, int argc, char** argv, const std::function<int(
         say(error.what());
     }
     return failed;
+}
+
+void check_outputs(const std::vector<std::string>& names) {
+    namespace fs = std::filesystem;
+    std::set<fs::path> seen;
+    for (const std::string& name : names) {
+        std::error_code none;
+        if (name.empty() || (fs::exists(name, none) && !fs::is_regular_file(name, none))) continue;
+        if (!seen.insert(name == "-" ? fs::path(name) : fs::weakly_canonical(fs::absolute(name), none)).second)
+            throw CLI::ValidationError(name + ": two outputs of one run cannot have the same name");
+    }
 }
 
 void parse(CLI::App& app, int argc, char** argv, const Common& common) {

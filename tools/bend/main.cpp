@@ -20,8 +20,9 @@ int run(int argc, char** argv) {
     options.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
+    cli::check_outputs({common.output, options.states});
 
-    io::Input input(common.files);
+    io::Input input(common.files, cli::stop_requested);
     io::Output output(common.output, true);
     std::optional<io::Output> states;
     if (!options.states.empty()) states.emplace(options.states, common.text);

@@ -70,7 +70,7 @@ int green(int argc, char** argv) {
         "sinter green");
     GreenOptions options;
     options.add_to(app);
-    cli::parse(app, argc - 1, argv + 1, options.common);
+    cli::parse(app, argc, argv, options.common);
     options.complete(app);
     const Material material = material_named(options.material);
     io::Output output(options.common.output, options.common.text);

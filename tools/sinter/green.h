@@ -3,8 +3,7 @@
 
 namespace kiln::sinter {
 
-/// Runs the command; argv[0] is the program and argv[1] is "green". Returns the exit status; errors are thrown, for cli::run to
-/// report.
+/// Runs the command; argv[0] is "green". Returns the exit status; errors are thrown, for cli::run to report.
 int green(int argc, char** argv);
 
 }  // namespace kiln::sinter

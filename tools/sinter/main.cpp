@@ -19,6 +19,7 @@ int sinter_states(int argc, char** argv) {
     options.add_to(app);
     cli::parse(app, argc, argv, common);
     options.check(common.output);
+    cli::check_outputs({common.output, options.history, options.checkpoint});
 
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
     sinter::Checkpoint checkpoint(options, entry(Json::object())["arguments"]);
@@ -44,8 +45,6 @@ int sinter_states(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return kiln::cli::run("sinter", argc, argv, [](int count, char** words) {
-        if (count > 1 && std::string_view(words[1]) == "green") return kiln::sinter::green(count, words);
-        return sinter_states(count, words);
-    });
+    if (argc > 1 && std::string_view(argv[1]) == "green") return kiln::cli::run("sinter green", argc - 1, argv + 1, kiln::sinter::green);
+    return kiln::cli::run("sinter", argc, argv, sinter_states);
 }
