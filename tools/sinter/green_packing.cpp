@@ -6,6 +6,7 @@
 
 #include "core/neighbours.h"
 #include "core/spatial_order.h"
+#include "io/files.h"
 
 namespace kiln::sinter {
 
@@ -58,11 +59,11 @@ std::string rounded(double value) {
     return text;
 }
 
-/// Throws the Error that says how far the relaxation came.
+/// Throws the Error that says how far the relaxation came, or Interrupted if it was told to stop.
 void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) {
     if (relaxation.finished) return;
     const std::string steps = std::to_string(relaxation.steps) + " steps";
-    if (!relaxation.jammed && relaxation.steps < RelaxationOptions().most_steps) throw Error("interrupted after " + steps);
+    if (!relaxation.jammed && relaxation.steps < RelaxationOptions().most_steps) throw io::Interrupted();
     const std::string when = (relaxation.jammed ? "jammed after " : "after ") + steps;
     if (options.method == Method::soft)
         throw Error("relative density " + rounded(options.density) + ": " + when + " the mean overlap is " +
