@@ -39,7 +39,7 @@ void finish_partial(const std::string& name) {
     if (std::rename(partial.c_str(), final.c_str()) != 0 && errno != ENOENT) throw_system_error(name + ": cannot be renamed into place");
 }
 
-Input::Input(std::vector<std::string> files) : files_(std::move(files)) {
+Input::Input(std::vector<std::string> files, bool (*stop)()) : files_(std::move(files)), stop_(stop) {
     if (files_.empty()) files_.push_back("-");
 }
 
@@ -48,6 +48,7 @@ Input::~Input() {
 }
 
 std::optional<Document> Input::next() {
+    if (stop_ && stop_()) throw Interrupted();
     Document document;
     for (;;) {
         if (reader_ && reader_->next(document)) {

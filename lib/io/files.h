@@ -24,7 +24,9 @@ struct Interrupted : std::exception {};
 /// The documents of several files, one after the other; no file, or "-", is stdin.
 class Input {
    public:
-    explicit Input(std::vector<std::string> files);
+    /// stop: asked before each document; where it says true Interrupted is thrown. A signal that comes while a program works, and not
+    /// while it waits, would otherwise be forgotten in the next wait.
+    explicit Input(std::vector<std::string> files, bool (*stop)() = nullptr);
     ~Input();
 
     /// Next document; nothing at the end. Throws Error for a file that cannot be opened or read, or if there was no document at
@@ -36,6 +38,7 @@ class Input {
 
    private:
     std::vector<std::string> files_;
+    bool (*stop_)();
     std::size_t opened_ = 0;
     std::size_t documents_ = 0;
     std::FILE* file_ = nullptr;

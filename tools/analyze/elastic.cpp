@@ -84,7 +84,7 @@ int elastic(int argc, char** argv) {
     common.add_to(app);
     cli::parse(app, argc, argv, common);
 
-    io::Input input(common.files);
+    io::Input input(common.files, cli::stop_requested);
     Report report(common, table, columns);
     bool converged = true;
     while (const auto state = input.next_state()) report.add(elastic_of(*state, model, tolerance, converged));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/tool.h"
 #include "io/files.h"
 #include "tools/analyze/csv.h"
 #include "tools/analyze/results.h"
@@ -47,7 +48,7 @@ Points read_points(const std::vector<std::string>& files) {
     Points points;
     std::vector<std::string> streams;
     const auto read_streams = [&] {
-        io::Input input(std::exchange(streams, {}));
+        io::Input input(std::exchange(streams, {}), cli::stop_requested);
         while (const auto document = input.next()) add_point(points, *document);
     };
     for (const std::string& file : files) {

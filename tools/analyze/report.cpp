@@ -80,7 +80,7 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
 
     Report report(common, table, columns);
     const auto add_all = [&](std::vector<std::string> files) {
-        io::Input input(std::move(files));
+        io::Input input(std::move(files), cli::stop_requested);
         while (auto document = input.next()) report.add(convert(std::move(*document)));
     };
     std::vector<std::string> streams;  // between two tables

@@ -163,7 +163,7 @@ int select(int argc, char** argv) {
     common.add_to(app);
     cli::parse(app, argc, argv, common);
 
-    io::Input input(common.files);
+    io::Input input(common.files, cli::stop_requested);
     io::Output output(common.output, common.text);
     std::vector<Choice> choices;
     for (const double wanted : options.wanted()) choices.push_back({wanted});

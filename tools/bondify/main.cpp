@@ -36,7 +36,7 @@ int run(int argc, char** argv) {
     common.add_to(app);
     cli::parse(app, argc, argv, common);
 
-    io::Input input(common.files);
+    io::Input input(common.files, cli::stop_requested);
     io::Output output(common.output, common.text);
     cli::Progress progress("bondify", common);
     std::size_t number = 0;

@@ -157,7 +157,7 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
         if (taken_up) last->take_up(sinks.checkpoint.state());
         const bool whole = last->run();
         converged = last->progressed().converged;
-        if (whole) continue;
+        if (whole && (sinks.checkpoint.wanted() || !cli::stop_requested())) continue;
         if (!sinks.checkpoint.wanted()) break;
         sinks.progress.clear();
         sinks.warn("stopped; --resume goes on from the checkpoint");
