@@ -1,5 +1,9 @@
-# fuzz.mk: `make fuzz` feeds mutated documents to the reader for FUZZ_SECONDS, under the address and undefined behaviour sanitizers.
+# fuzz.mk: `make fuzz` feeds mutated documents to the reader for FUZZ_SECONDS, under the address and undefined behaviour sanitizers;
+# `make mutate` feeds spoilt streams to the four programs as they are.
 FUZZ_SECONDS ?= 60
+# Documents after which the fuzzer ends if the time has not come yet; -1 is none.
+FUZZ_RUNS    ?= -1
+COUNT        ?= 10000
 FUZZ_CXX     ?= clang++-14
 FUZZ_FLAGS   := -std=c++20 -g1 -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined \
                 -Ilib -isystem /usr/include/eigen3
@@ -9,11 +13,15 @@ FUZZ_OBJECTS := $(FUZZ_SOURCES:%.cpp=$(BUILD)/fuzz/%.o)
 # No input needs more memory than this, nor longer than this for one document.
 FUZZ_LIMITS  := -rss_limit_mb=1024 -malloc_limit_mb=64 -timeout=10 -max_len=16384
 
-.PHONY: fuzz
+.PHONY: fuzz mutate
 fuzz: $(BUILD)/fuzz/reader      ## feed mutated documents to the reader for FUZZ_SECONDS (60)
 	@mkdir -p $(BUILD)/fuzz/corpus
-	$< $(FUZZ_LIMITS) -max_total_time=$(FUZZ_SECONDS) -dict=tests/fuzz/dem-state.dict -artifact_prefix=$(BUILD)/fuzz/ \
+	$< $(FUZZ_LIMITS) -max_total_time=$(FUZZ_SECONDS) -runs=$(FUZZ_RUNS) -dict=tests/fuzz/dem-state.dict -artifact_prefix=$(BUILD)/fuzz/ \
 	    -print_final_stats=1 $(BUILD)/fuzz/corpus tests/data/conformance/valid tests/data/conformance/invalid
+
+mutate: all                     ## feed COUNT (10000) spoilt streams to the four programs; 8 ms each
+	@mkdir -p $(BUILD)/mutants
+	BIN=$(abspath $(BUILD))/bin PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/fuzz/mutate.py --count $(COUNT) --keep $(BUILD)/mutants
 
 $(BUILD)/fuzz/reader: $(FUZZ_OBJECTS)
 	$(FUZZ_CXX) $(FUZZ_FLAGS) $^ -o $@
