@@ -34,7 +34,7 @@ BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
 BENCH_SCRIPTS := $(basename $(notdir $(wildcard bench/*.py)))
 PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
 
-.PHONY: all demo test unit-test cli-test bench man install asan clean help packages
+.PHONY: all demo test unit-test cli-test bench man install clean help packages
 .SECONDARY:
 
 all: $(PROGRAMS)                ## build the four programs into build/bin
@@ -71,7 +71,7 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
--include demo.mk tests/fuzz/fuzz.mk
+-include demo.mk checks.mk tests/fuzz/fuzz.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 # Test cases run once: quick to compile counts for more than quick to run.
@@ -86,10 +86,6 @@ unit-test: $(BUILD)/test/unit   ## closed forms, conservation laws, limits
 
 cli-test: all $(BUILD)/neighbours-present  ## the programs as a user runs them
 	@BUILD=$(BUILD) PYTHON=$(PYTHON) UNIT=0 tests/run.sh
-
-asan:                           ## build with address and undefined-behaviour sanitizers into build-asan and run all tests
-	$(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \
-	    OPTIMISE="-O1 -UNDEBUG" test
 
 # ---- benchmarks, manual pages, installation -----------------------------------------------------------------------------------
 bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines and pictures in build/bench

@@ -4,6 +4,10 @@ TEST_PACKAGES   := doctest-dev bats bats-support bats-assert jq
 PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio
 # Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip without.
 NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
+# Further checks, by hand only: `make fuzz`, `make tsan`, `make tidy`.
+FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
+TSAN_PACKAGES := $(FUZZ_PACKAGES) libomp-14-dev
+TIDY_PACKAGES := clang-tidy-14
 PACKAGES := $(BUILD_PACKAGES) $(TEST_PACKAGES) $(PICTURE_PACKAGES)
 
 # Installs those of $(1) that are missing. As root nothing is asked; otherwise sudo is used.

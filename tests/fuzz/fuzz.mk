@@ -28,6 +28,6 @@ $(BUILD)/fuzz/reader: $(FUZZ_OBJECTS)
 
 $(BUILD)/fuzz/%.o: %.cpp
 	@command -v $(FUZZ_CXX) >/dev/null || \
-	    { echo "make fuzz needs $(FUZZ_CXX), of the Debian packages clang-14 and libclang-rt-14-dev" >&2; exit 1; }
+	    { echo "make fuzz needs $(FUZZ_CXX), of the Debian packages $(FUZZ_PACKAGES)" >&2; exit 1; }
 	@mkdir -p $(@D)
 	$(FUZZ_CXX) $(FUZZ_FLAGS) -MMD -MP -c $< -o $@

@@ -39,10 +39,12 @@ Prefix prefix_of(const Column& column, const std::vector<Json>& rows) {
     return found == prefixes.end() ? prefixes.back() : *found;
 }
 
-std::string cell(const Json& value, double factor) {
+std::string cell(const Json& row, const std::string& key, double factor) {
+    const Json& value = value_at(row, key);
     if (value.is_null()) return "-";
     if (value.is_string()) return value.get<std::string>();
     if (!value.is_number_float()) return value.dump();
+    if (!std::isfinite(value.get<double>())) throw Error(key + " is not a finite number");
     char text[32];
     std::snprintf(text, sizeof text, "%.5g", value.get<double>() / factor);
     return text;
@@ -102,7 +104,7 @@ std::string table_text(const std::vector<Column>& columns, const std::vector<Jso
     for (const Column& column : columns) {
         const Prefix prefix = prefix_of(column, rows);
         std::vector<std::string> cells{column.heading + (column.unit.empty() ? "" : ", " + (prefix.name + column.unit))};
-        for (const Json& row : rows) cells.push_back(cell(value_at(row, column.key), prefix.factor));
+        for (const Json& row : rows) cells.push_back(cell(row, column.key, prefix.factor));
         const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
         for (std::size_t line = 0; line < lines.size(); ++line) {
             if (!lines[line].empty()) lines[line] += "  ";

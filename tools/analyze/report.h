@@ -44,7 +44,8 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
                 const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table = {});
 
-/// The rows as text: headings with units, numbers with five digits, columns flush right, "-" for what a row does not have.
+/// The rows as text: headings with units, numbers with five digits, columns flush right, "-" for what a row does not have. Throws
+/// Error for NaN and infinity, as JSON lines do.
 std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows);
 
 }  // namespace kiln::analyze
