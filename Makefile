@@ -34,7 +34,7 @@ BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
 BENCH_SCRIPTS := $(basename $(notdir $(wildcard bench/*.py)))
 PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
 
-.PHONY: all demo test unit-test cli-test bench man install clean help packages
+.PHONY: all demo test unit-test cli-test bench man clean help packages
 .SECONDARY:
 
 all: $(PROGRAMS)                ## build the four programs into build/bin
@@ -71,7 +71,7 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
--include demo.mk checks.mk tests/fuzz/fuzz.mk
+include demo.mk checks.mk tests/fuzz/fuzz.mk packaging/package.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 # Test cases run once: quick to compile counts for more than quick to run.
@@ -87,7 +87,7 @@ unit-test: $(BUILD)/test/unit   ## closed forms, conservation laws, limits
 cli-test: all $(BUILD)/neighbours-present  ## the programs as a user runs them
 	@BUILD=$(BUILD) PYTHON=$(PYTHON) UNIT=0 tests/run.sh
 
-# ---- benchmarks, manual pages, installation -----------------------------------------------------------------------------------
+# ---- benchmarks, manual pages -------------------------------------------------------------------------------------------------
 bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines and pictures in build/bench
 	@for name in $(BENCH_NAMES); do echo "== $$name"; $(BUILD)/bench/$$name | tee $(BUILD)/bench/$$name.jsonl; done
 	@for name in $(BENCH_SCRIPTS); do \
@@ -108,16 +108,6 @@ $(BUILD)/man/dem-convert.1: workflows/post/dem-convert workflows/post/dem_conver
 $(BUILD)/man/dem-state.5: docs/dem-state.5
 	@mkdir -p $(@D)
 	cp $< $@
-
-install: all man                ## install programs and manual pages under PREFIX (default /usr/local)
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
-	install $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
-	install -d $(DESTDIR)$(PREFIX)/share/kiln/post
-	install -m 644 workflows/post/dem_state.py workflows/post/dem_convert.py workflows/post/convert_*.py $(DESTDIR)$(PREFIX)/share/kiln/post
-	install workflows/post/dem-convert $(DESTDIR)$(PREFIX)/share/kiln/post
-	ln -sf ../share/kiln/post/dem-convert $(DESTDIR)$(PREFIX)/bin/dem-convert
-	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
-	install -m 644 $(BUILD)/man/*.5 $(DESTDIR)$(PREFIX)/share/man/man5
 
 clean:                          ## delete everything that was built
 	rm -rf $(BUILD)

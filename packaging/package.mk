@@ -1,0 +1,21 @@
+# package.mk: `make install` and `make deb`.
+INSTALLED   = $(DESTDIR)$(PREFIX)
+SHARE       = $(INSTALLED)/share
+DEB_FOLDER ?= $(BUILD)/deb
+VERSION     = $(shell sed -nE 's/.*version = "([^"]+)".*/\1/p' lib/cli/tool.h)
+
+.PHONY: install deb
+
+install: all man                ## install programs, manual pages and completion under PREFIX (default /usr/local)
+	install -d $(INSTALLED)/bin $(SHARE)/man/man1 $(SHARE)/man/man5 $(SHARE)/kiln/post $(SHARE)/bash-completion/completions
+	install $(PROGRAMS) $(INSTALLED)/bin
+	install -m 644 workflows/post/dem_state.py workflows/post/dem_convert.py workflows/post/convert_*.py $(SHARE)/kiln/post
+	install workflows/post/dem-convert $(SHARE)/kiln/post
+	ln -sf ../share/kiln/post/dem-convert $(INSTALLED)/bin/dem-convert
+	install -m 644 $(BUILD)/man/*.1 $(SHARE)/man/man1
+	install -m 644 $(BUILD)/man/*.5 $(SHARE)/man/man5
+	install -m 644 completion/kiln.bash $(SHARE)/bash-completion/completions/sinter
+	for tool in bondify bend analyze; do ln -sf sinter $(SHARE)/bash-completion/completions/$$tool; done
+
+deb: all man                    ## a Debian package of this build into build/deb
+	+packaging/make-deb.sh $(DEB_FOLDER) $(VERSION) $(BUILD)

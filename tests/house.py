@@ -1,0 +1,70 @@
+"""house.py: habits of the tree that a program can check: which part may use which, lengths of lines and files, absolute paths."""
+import os
+import re
+import subprocess
+import sys
+
+LONGEST_LINE = 132  # characters
+LONGEST_FILE = 300  # lines
+# Which parts a part may include, besides itself. io lies beside the others on core; of physics it takes only the built-in materials,
+# which a state without any is made of.
+BELOW = {
+    "lib/core": [],
+    "lib/io": ["lib/core", "lib/physics"],
+    "lib/physics": ["lib/core"],
+    "lib/numerics": ["lib/core", "lib/physics"],
+    "lib/mechanics": ["lib/core", "lib/physics"],
+    "lib/cli": ["lib/core", "lib/io", "lib/physics", "lib/numerics", "lib/mechanics"],
+    "tools/sinter": ["lib/core", "lib/io", "lib/physics", "lib/numerics", "lib/cli"],
+    "tools/bondify": ["lib/core", "lib/io", "lib/physics", "lib/cli"],
+    "tools/bend": ["lib/core", "lib/io", "lib/physics", "lib/mechanics", "lib/cli"],
+    "tools/analyze": ["lib/core", "lib/io", "lib/physics", "lib/mechanics", "lib/cli"],
+}
+TEXT = (".cpp", ".h", ".py", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")
+MACHINE_PATH = re.compile(r"(?<![\w.$])/(home|root|work|mnt|srv)/")
+INCLUDE = re.compile(r'#include "([^"]+)"')
+
+
+def part_of(path):
+    """lib/io of lib/io/files.h; nothing for a file elsewhere."""
+    part = "/".join(path.split("/")[:2])
+    return part if part in BELOW else None
+
+
+def included_part(path, name):
+    """The part that an included file belongs to; a bare name is a file of the same folder."""
+    if "/" not in name:
+        return part_of(path)
+    return part_of(name) or part_of("lib/" + name)
+
+
+def faults_of(path):
+    """Sentences on one file."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    if len(lines) - 1 > LONGEST_FILE:
+        yield f"{path}: has {len(lines) - 1} lines, more than {LONGEST_FILE}"
+    for number, line in enumerate(lines, 1):
+        if len(line) > LONGEST_LINE:
+            yield f"{path}:{number}: has {len(line)} characters, more than {LONGEST_LINE}"
+        if MACHINE_PATH.search(line) and path != "tests/house.py":
+            yield f"{path}:{number}: names a path of some machine"
+        include = INCLUDE.match(line)
+        part = part_of(path)
+        if include and part:
+            used = included_part(path, include[1])
+            if used is None or used != part and used not in BELOW[part]:
+                yield f"{path}:{number}: {part} may not include {include[1]}"
+
+
+def main():
+    os.chdir(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], capture_output=True, check=True, text=True)
+    files = [path for path in listed.stdout.split("\n") if path.endswith(TEXT) and os.path.exists(path)]
+    faults = [fault for path in files for fault in faults_of(path)]
+    print("\n".join(faults) or f"{len(files)} files in order")
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
