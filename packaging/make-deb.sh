@@ -7,7 +7,7 @@ staging=$(mktemp -d)
 trap 'rm -rf "$staging"' EXIT
 chmod 755 "$staging"
 
-make -s --no-print-directory BUILD="$build" PREFIX=/usr DESTDIR="$staging" install
+MAKEFLAGS='' make -s --no-print-directory BUILD="$build" PREFIX=/usr DESTDIR="$staging" install
 strip --strip-unneeded "$staging"/usr/bin/{sinter,bondify,bend,analyze}
 find "$staging" -name '*.[15]' -exec gzip -9n {} +
 install -D -m 644 LICENSE "$staging/usr/share/doc/kiln/copyright"

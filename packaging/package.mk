@@ -18,4 +18,4 @@ install: all man                ## install programs, manual pages and completion
 	for tool in bondify bend analyze; do ln -sf sinter $(SHARE)/bash-completion/completions/$$tool; done
 
 deb: all man                    ## a Debian package of this build into build/deb
-	+packaging/make-deb.sh $(DEB_FOLDER) $(VERSION) $(BUILD)
+	packaging/make-deb.sh $(DEB_FOLDER) $(VERSION) $(BUILD)

@@ -1,0 +1,76 @@
+#!/usr/bin/env bats
+# docs.bats: every command that the documentation fences as sh runs, and every change that it shows applies and compiles.
+bats_require_minimum_version 1.5.0
+load helper.bash
+
+# Green bodies of the documentation have this many particles here, so that a page takes seconds.
+: "${DOC_PARTICLES:=400}"
+
+# A folder that looks like the source from within, but for what the commands write, and the programs under their names.
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    mkdir -p tree/build/bin home
+    cd tree
+    for name in "$ROOT"/*; do [ "${name##*/}" = build ] || ln -s "$name" .; done
+    for name in SINTER BONDIFY BEND ANALYZE; do ln -s "$(realpath "${!name}")" "build/bin/${name,,}"; done
+    ln -s "$ROOT/workflows/post/dem-convert" build/bin/
+    export HOME="$BATS_TEST_TMPDIR/home" PYTHONDONTWRITEBYTECODE=1
+}
+
+# What a page fences as a language.
+fenced() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$ROOT/$2" | grep -v '^```'; }
+
+# Runs a page from top to bottom in one shell, with small green bodies; targets that build or test are only looked up.
+run_page() {
+    {
+        printf '%s\n' 'set -euo pipefail' "export PATH=$PWD/build/bin:\$PATH" \
+            'make() { if [[ ${1-} == -C ]]; then command make "$@"; else command make -n BUILD="$REAL_BUILD" "$@" >/dev/null; fi; }'
+        fenced sh "$1" | sed -E "s/green -n [0-9]+/green -n $DOC_PARTICLES/"
+    } >page.sh
+    REAL_BUILD="${BUILD:-$ROOT/build}" BIN="$PWD/build/bin" run -0 bash page.sh
+    refute_output --regexp "\bnan\b"
+}
+
+@test "the commands of the README run" {
+    run_page README.md
+}
+
+@test "the tutorial leads from powder to modulus" {
+    run_page docs/tutorial.md
+    [ -s tutorial/bonded.kiln ]
+    assert_output --partial "Young's modulus, GPa"
+    assert_output --partial "E0, GPa"
+}
+
+@test "stages are replaced as the page says, in Python, in the shell and in a study" {
+    run_page docs/replace-a-stage.md
+    jq -e '.history[-1].arguments == ["--volume", "cap-corrected"]' <(head -1 mine/0.88/bonded.kiln)
+}
+
+@test "no page has commands that are not run here" {
+    run -0 grep -lE '^```(sh|bash|console|shell)$' -r "$ROOT/docs" "$ROOT/README.md" "$ROOT/CONTRIBUTING.md"
+    for page in "${lines[@]}"; do
+        [[ $page == */README.md || $page == */tutorial.md || $page == */replace-a-stage.md ]] || fail "$page has commands that no test runs"
+    done
+}
+
+@test "the laws that the page adds apply to the tree, compile without a warning and pass the page's test" {
+    rm lib tests
+    cp -r "$ROOT/lib" "$ROOT/tests" .
+    fenced diff docs/add-a-law.md >change
+    GIT_CEILING_DIRECTORIES="$BATS_TEST_TMPDIR" git apply change
+    compile() { g++ -std=c++20 -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror -Ilib -I. -isystem /usr/include/eigen3 "$@"; }
+    compile -fsyntax-only lib/cli/bond_model.cpp
+    compile -fsyntax-only -x c++ - <<<'#include "physics/sinter_contact.h"'
+    compile -o law lib/physics/bond_law.cpp tests/unit/stepped_law_test.cpp tests/unit/main.cpp
+    run -0 ./law
+    assert_output --partial "6 passed"
+}
+
+@test "every file that a page names is there, or is made by a change that it shows" {
+    for page in README.md CONTRIBUTING.md docs/*.md; do
+        while read -r name; do
+            compgen -G "$ROOT/$name*" >/dev/null || grep -qxF "+++ b/$name" "$ROOT/$page" || fail "$page names $name"
+        done < <(grep -oP '(?<![\w/])(lib|tools|docs|tests|bench|workflows)/[\w./-]+\w' "$ROOT/$page" | sort -u)
+    done
+}
