@@ -1,4 +1,5 @@
-# checks.mk: what looks for faults besides the tests: sanitizers, clang-tidy, a comparison of builds. None is needed for `make test`.
+# checks.mk: what looks for faults besides the tests: sanitizers, clang-tidy, a comparison of builds. None is needed for `make
+# test`.
 TIDY        ?= clang-tidy-14
 TSAN_CXX    ?= clang++-14
 ARCHER      ?= /usr/lib/llvm-14/lib/libarcher.so

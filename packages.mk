@@ -2,7 +2,8 @@
 BUILD_PACKAGES  := g++ libeigen3-dev libcli11-dev nlohmann-json3-dev libboost-dev
 TEST_PACKAGES   := doctest-dev bats bats-support bats-assert jq
 PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio
-# Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip without.
+# Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip
+# without.
 NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
 # Further checks, by hand only: `make fuzz`, `make tsan`, `make tidy`.
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev

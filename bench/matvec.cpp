@@ -1,5 +1,5 @@
-// matvec.cpp: memory traffic of the product of a contact network's stiffness with a vector, and of its preconditioner, beside that of a
-// triad a = b + s c in the same run. JSON lines; argument: number of particles along an edge (default 60: 216,000).
+// matvec.cpp: memory traffic of the product of a contact network's stiffness with a vector, and of its preconditioner, beside that
+// of a triad a = b + s c in the same run. JSON lines; argument: number of particles along an edge (default 60: 216,000).
 #include <omp.h>
 
 #include <algorithm>

@@ -12,9 +12,10 @@ strip --strip-unneeded "$staging"/usr/bin/{sinter,bondify,bend,analyze}
 find "$staging" -name '*.[15]' -exec gzip -9n {} +
 install -D -m 644 LICENSE "$staging/usr/share/doc/kiln/copyright"
 
-# The package that owns each shared library, in the version that is installed here or a newer one.
+# The package that owns each shared library, in the version that is installed here or a newer one. /lib and /usr/lib are one folder,
+# and a package lists its files in either.
 depends=$(for library in $(ldd "$staging"/usr/bin/{sinter,bondify,bend,analyze} | awk '/=> \// {print $3}' | sort -u); do
-    dpkg-query --search "*/$(basename "$(dirname "$library")")/$(basename "$library")"  # /lib and /usr/lib are one folder, listed as either
+    dpkg-query --search "*/$(basename "$(dirname "$library")")/$(basename "$library")"
 done | cut -d: -f1 | sort -u | while read -r package; do
     echo "$package (>= $(dpkg-query -W -f '${source:Upstream-Version}\n' "$package" | sort -V | head -1))"
 done | paste -sd, | sed 's/,/, /g')

@@ -1,7 +1,8 @@
 # common.mk: what every study shares: the programs, the settings of a run, the rules from one kind of file to the next.
 #
 # A study includes this file after it has said what it is: STUDY (a name), CASES (relative densities), GREEN, SINTERING, BONDING and
-# BENDING (options of the four stages); FIT holds those of the fit. Every file of a run stands under OUT; a case is a folder there, named for its density:
+# BENDING (options of the four stages); FIT holds those of the fit. Every file of a run stands under OUT; a case is a folder there,
+# named for its density:
 #   green.kiln  sintered.kiln  history.jsonl  0.67/{sintered.kiln,bonded.kiln,bonds.json,bend.json,bent.kiln,modulus.json}  fit.json
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c

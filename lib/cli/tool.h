@@ -35,8 +35,8 @@ void keep_freed_memory();
 /// exceptions into one sentence "tool: …" on stderr and an exit status.
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body);
 
-/// Throws CLI::ValidationError where two outputs of a run have one name, since the last one to be written would replace the other. An
-/// empty name is an output that was not asked for; "-" is standard output. Devices and pipes may be named twice.
+/// Throws CLI::ValidationError where two outputs of a run have one name: the last one written would replace the other. An empty
+/// name is an output that was not asked for; "-" is standard output. Devices and pipes may be named twice.
 void check_outputs(const std::vector<std::string>& names);
 
 /// Parses argv; sets the number of threads. Throws CLI::ParseError for run() to report; --help and --version end the tool there.

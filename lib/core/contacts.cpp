@@ -15,7 +15,7 @@ ContactStatistics contact_statistics(const Box& box, const Particles& particles,
         ++contacts;
         sum += overlap / radii;
     }
-    const double count = static_cast<double>(contacts);
+    const auto count = static_cast<double>(contacts);
     return {particles.size() == 0 ? 0.0 : 2.0 * count / static_cast<double>(particles.size()), contacts == 0 ? 0.0 : sum / count};
 }
 

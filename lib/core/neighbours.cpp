@@ -144,7 +144,7 @@ struct Visit {
 Visit visit_axis(const Frame& frame, const Grid& grid, const Entry& entry, int axis) {
     const auto at = static_cast<std::size_t>(axis);
     std::int32_t home = 0;
-    const double cells = static_cast<double>(grid.cells[at]);
+    const auto cells = static_cast<double>(grid.cells[at]);
     const double centre = frame.fraction(entry.position[axis], axis, home) * cells;
     const double range =
         (entry.reach + grid.largest_reach) / frame.extent[axis] * cells * (1.0 + rounding_margin) + rounding_margin;

@@ -18,6 +18,7 @@ std::vector<Value> pick(const std::vector<Value>& source, const std::vector<std:
 
 std::vector<NamedArray> pick(const std::vector<NamedArray>& arrays, const std::vector<std::int32_t>& rows) {
     std::vector<NamedArray> picked;
+    picked.reserve(arrays.size());
     for (const NamedArray& named : arrays) picked.push_back({named.name, take_rows(named.array, rows)});
     return picked;
 }

@@ -36,11 +36,12 @@ void throw_system_error(const std::string& sentence) {
 
 void finish_partial(const std::string& name) {
     const std::string final = resolved(name), partial = final + ".partial";
-    if (std::rename(partial.c_str(), final.c_str()) != 0 && errno != ENOENT) throw_system_error(name + ": cannot be renamed into place");
+    if (std::rename(partial.c_str(), final.c_str()) != 0 && errno != ENOENT)
+        throw_system_error(name + ": cannot be renamed into place");
 }
 
 Input::Input(std::vector<std::string> files, bool (*stop)()) : files_(std::move(files)), stop_(stop) {
-    if (files_.empty()) files_.push_back("-");
+    if (files_.empty()) files_.emplace_back("-");
 }
 
 Input::~Input() {
@@ -87,8 +88,8 @@ Output::Output(std::string name, bool text, std::optional<Resumption> resumption
     struct stat status {};
     const bool exists = stat(name_.c_str(), &status) == 0;
     if (!exists && errno != ENOENT) fail();
-    if (exists && !S_ISREG(status.st_mode) && resumption) throw Error(name_ + ": is no regular file, so no run can be taken up in it");
     if (exists && !S_ISREG(status.st_mode)) {  // a device or a pipe has no whole to wait for
+        if (resumption) throw Error(name_ + ": is no regular file, so no run can be taken up in it");
         file_ = std::fopen(name_.c_str(), "wbe");
         if (!file_) fail();
         return;

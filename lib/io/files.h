@@ -24,8 +24,8 @@ struct Interrupted : std::exception {};
 /// The documents of several files, one after the other; no file, or "-", is stdin.
 class Input {
    public:
-    /// stop: asked before each document; where it says true Interrupted is thrown. A signal that comes while a program works, and not
-    /// while it waits, would otherwise be forgotten in the next wait.
+    /// stop: asked before each document; where it says true Interrupted is thrown. A signal that comes while a program works would
+    /// otherwise be forgotten in the next wait.
     explicit Input(std::vector<std::string> files, bool (*stop)() = nullptr);
     ~Input();
 
@@ -71,8 +71,8 @@ class Output {
     void write(const Json& line);
     void write_text(const std::string& text);
 
-    /// Hands everything to the system and gives the number of bytes in the file so far. From then on the partial file of a run that may
-    /// be taken up stays where it breaks off.
+    /// Hands everything to the system and gives the number of bytes in the file so far. From then on the partial file of a run that
+    /// may be taken up stays where it breaks off.
     std::uint64_t flushed_bytes();
 
     /// Flushes, checks, and gives the file its final name. Throws Error on a full disk, ClosedPipe on a closed pipe.

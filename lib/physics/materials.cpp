@@ -9,8 +9,8 @@ namespace kiln::physics {
 
 namespace {
 
-/// Dosta et al. 2017, Table 1 (density, surface energy, atomic volume) and section 5 (elastic constants); grain boundary diffusion of
-/// alumina as used with this contact model by Besler et al., refs. 5 and 6 there.
+/// Dosta et al. 2017, Table 1 (density, surface energy, atomic volume) and section 5 (elastic constants); grain boundary diffusion
+/// of alumina as used with this contact model by Besler et al., refs. 5 and 6 there.
 Material alumina() {
     Material material;
     material.name = "alumina";

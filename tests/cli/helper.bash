@@ -1,4 +1,5 @@
-# helper.bash: what every Bats file loads: assertions, the programs (from the environment, else from build/bin), a comparison of numbers.
+# helper.bash: what every Bats file loads: assertions, the programs (from the environment, else from build/bin), a comparison of
+# numbers.
 load /usr/lib/bats/bats-support/load
 load /usr/lib/bats/bats-assert/load
 

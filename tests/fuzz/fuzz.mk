@@ -16,8 +16,8 @@ FUZZ_LIMITS  := -rss_limit_mb=1024 -malloc_limit_mb=64 -timeout=10 -max_len=1638
 .PHONY: fuzz mutate
 fuzz: $(BUILD)/fuzz/reader      ## feed mutated documents to the reader for FUZZ_SECONDS (60)
 	@mkdir -p $(BUILD)/fuzz/corpus
-	$< $(FUZZ_LIMITS) -max_total_time=$(FUZZ_SECONDS) -runs=$(FUZZ_RUNS) -dict=tests/fuzz/dem-state.dict -artifact_prefix=$(BUILD)/fuzz/ \
-	    -print_final_stats=1 $(BUILD)/fuzz/corpus tests/data/conformance/valid tests/data/conformance/invalid
+	$< $(FUZZ_LIMITS) -max_total_time=$(FUZZ_SECONDS) -runs=$(FUZZ_RUNS) -dict=tests/fuzz/dem-state.dict \
+	    -artifact_prefix=$(BUILD)/fuzz/ -print_final_stats=1 $(BUILD)/fuzz/corpus $(wildcard tests/data/conformance/*valid)
 
 mutate: all                     ## feed COUNT (10000) spoilt streams to the four programs; 8 ms each
 	@mkdir -p $(BUILD)/mutants

@@ -5,8 +5,8 @@ import re
 import struct
 
 NUMBER = re.compile(rb"(?<=[:\[,])-?[0-9][0-9.eE+-]*")
-STRANGE_NUMBERS = [b"NaN", b"-Infinity", b"1e999", b"1e308", b"-1", b"0", b"-0.0", b"1e-320", b"0.5", b"255", b"65536", b"2147483648",
-                   b"4294967296", b"9223372036854775807", b"1e18", b"null", b"true", b'"1"', b"[]", b"{}"]
+STRANGE_NUMBERS = [b"NaN", b"-Infinity", b"1e999", b"1e308", b"-1", b"0", b"-0.0", b"1e-320", b"0.5", b"255", b"65536",
+                   b"2147483648", b"4294967296", b"9223372036854775807", b"1e18", b"null", b"true", b'"1"', b"[]", b"{}"]
 STRANGE_VALUES = [None, True, -1, 0, 3, 1e300, "", "x", [], [1, 2, 3], {}, {"type": "f8", "shape": [2 ** 31 - 1], "data": []}]
 FACTORS = [-1, 0.5, 0.9, 1.1, 2, 10, 1e-6, 1e6, 1e-100, 1e100]
 STRANGE_DOUBLES = [float("nan"), float("inf"), -float("inf"), 0.0, -0.0, -1.0, 1e300, 1e-310, 5e-8]
@@ -107,7 +107,7 @@ def with_key(stream, chance):
     return line + b" " * max(0, start - len(line) - 1) + b"\n" + stream[start:]
 
 
-CHANGES = [scaled, scaled, scaled, scaled, with_number, with_number, with_key, with_key, with_double, with_double, with_bytes, with_bit, cut, with_slice]
+CHANGES = 4 * [scaled] + 2 * [with_number, with_key, with_double] + [with_bytes, with_bit, cut, with_slice]
 
 
 def mutant(stream, seed):
