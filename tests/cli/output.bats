@@ -1,34 +1,18 @@
 #!/usr/bin/env bats
-# output.bats: what every program promises about what it writes: files are whole or not there, pipes and signals end it in order.
+# output.bats: what every program promises about what it writes, and how pipes and signals end it. faults.bats has what can go wrong.
 load stream_support.bash
 
-@test "a full device is one sentence, for -o and for standard output" {
+@test "a full standard output is one sentence" {
+    stage_to_full() { stage "$@" >/dev/full; }
     for name in green "${READERS[@]}"; do
         file=$(input_of "$name")
         if [[ $name == green ]]; then file=; fi
-        run -1 --separate-stderr stage "$name" -q $file -o /dev/full
-        assert_one_sentence
-        assert_regex "$stderr" "/dev/full: cannot be written: No space left on device"
-        stage_to_full() { stage "$name" -q $file >/dev/full; }
-        run -1 --separate-stderr stage_to_full
+        run -1 --separate-stderr stage_to_full "$name" -q $file
         assert_one_sentence
         assert_regex "$stderr" "standard output: cannot be written: No space left on device"
     done
-    help_to_full() { "$SINTER" --help >/dev/full; }
-    run -1 --separate-stderr help_to_full
+    run -1 --separate-stderr stage_to_full sinter --help
     assert_one_sentence
-}
-
-@test "a file that may grow no further is one sentence, and what was there before stays" {
-    echo before >out
-    cp out wanted
-    limited() { (ulimit -f 1 && "$SINTER" green -n 2000 -o out); }
-    run -1 --separate-stderr limited
-    assert_one_sentence
-    assert_regex "$stderr" "out: cannot be written: File too large"
-    cmp out wanted
-    run -0 find . -name 'out*'
-    assert_output ./out
 }
 
 @test "a failure leaves the file that was there before" {
@@ -48,14 +32,6 @@ load stream_support.bash
     assert_regex "$stderr" "no/out: cannot be written: No such file or directory"
 }
 
-@test "an output may be the input" {
-    cp "$SHARED/green.dem" same.dem
-    "$BONDIFY" -q same.dem -o wanted.dem
-    "$BONDIFY" -q same.dem -o same.dem
-    cmp same.dem wanted.dem
-    "$BONDIFY" -q "$SHARED/green.dem" | cmp - wanted.dem
-}
-
 @test "links stay links, devices stay devices" {
     ln -s target link
     "$BONDIFY" -q "$SHARED/green.dem" -o link
@@ -64,17 +40,6 @@ load stream_support.bash
     "$BONDIFY" -q "$SHARED/green.dem" -o /dev/null
     [ -c /dev/null ]
     "$BONDIFY" -q "$SHARED/green.dem" -o /dev/stdout | cmp - "$SHARED/bonded.dem"
-}
-
-@test "two runs with one output leave the whole of one of them" {
-    for _ in 1 2 3; do
-        "$BONDIFY" -q "$SHARED/green.dem" -o out &
-        "$BONDIFY" -q "$SHARED/green.dem" -o out
-        wait $!
-        cmp out "$SHARED/bonded.dem"
-    done
-    run -0 find . -name 'out*'
-    assert_output ./out
 }
 
 @test "a pipe that closes ends a program silently" {

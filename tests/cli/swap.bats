@@ -36,14 +36,7 @@ END
 }
 
 @test "a Python stage in place of analyze fit" {
-    cat >fit.py <<'END'
-import json, math, sys
-import numpy
-tests = [json.loads(line) for line in sys.stdin]
-porosity = [1 - test["relative_density"] for test in tests]
-slope, intercept = numpy.polyfit(porosity, [math.log(test["young_modulus"]) for test in tests], 1)
-print(json.dumps({"law": "knudsen", "E0": math.exp(intercept), "b": -slope}))
-END
+    sed -n "/^cat >fit.py/,/^END/p" "$ROOT/docs/replace-a-stage.md" | bash
     "$BONDIFY" -q "$SINTERED" | "$BEND" -q | "$ANALYZE" modulus >modulus.json
     "$ANALYZE" fit --law knudsen modulus.json >expected.json
     "$PYTHON" fit.py <modulus.json >swapped.json
