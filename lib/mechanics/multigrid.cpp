@@ -132,7 +132,7 @@ void Multigrid::smooth(Level& level, bool from_zero) {
     const std::array factors{std::array{0.0, 1.0 / theta}, std::array{second_rho * first_rho, 2.0 * second_rho / delta}};
     const std::size_t size = level.load.size();
     for (std::size_t step = 0; step < factors.size(); ++step) {
-        const auto [memory, gain] = factors[step];
+        const double memory = factors[step][0], gain = factors[step][1];  // clang lets no structured binding into a parallel loop
         if (from_zero && step == 0) {
 #pragma omp parallel for schedule(static) if (size > worth_threads)
             for (std::size_t i = 0; i < size; ++i) {
