@@ -112,7 +112,7 @@ assert_end() {
 
 # A run that waits for the second document of its input, or packs a large body; its output stands beside its name by then.
 begin() {
-    PARTICLES=2000000 write_output "$1" out pipe 7>&- &
+    PARTICLES=200000 write_output "$1" out pipe 7>&- &
     process=$!
     if [[ $1 != green ]]; then head -c "$(stat -c %s "$SHARED/$2")" "$SHARED/$1.in" >&7; fi
     for _ in {1..200}; do
