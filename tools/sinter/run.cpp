@@ -20,6 +20,7 @@ constexpr double validity_limit = 0.9;  // relative density above which grain gr
 constexpr double full_density = 1.0;    // that no body passes
 constexpr double same_density = 1e-6;   // relative
 constexpr double most_contacts = 60.0;  // mean coordination number; a body without pores has about 14
+constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
 
 using numerics::triple;
 
@@ -110,9 +111,10 @@ class Sintered {
         progressed_.newton += record.newton;
         progressed_.conjugate_gradients += record.conjugate_gradients;
         progressed_.converged = progressed_.converged && record.converged;
-        if (record.contacts.coordination_number > most_contacts)
-            throw Error("at " + Json(record.time).dump() + " s a particle has " + Json(record.contacts.coordination_number).dump() +
-                        " contacts in the mean: the packing has shrunk into itself while the box stays empty");
+        if (record.contacts.coordination_number > most_contacts || record.contacts.mean_overlap_ratio > most_overlap)
+            throw Error("at " + Json(record.time).dump() + " s particles have " + Json(record.contacts.coordination_number).dump() +
+                        " contacts and overlap by " + Json(record.contacts.mean_overlap_ratio).dump() +
+                        " of their radii in the mean: the packing has shrunk into itself in a box that stays empty");
         const Json summary = summary_of(record, options_.method);
         if (sinks_.history) sinks_.history->write(summary);
         sinks_.progress.detail(summary);
