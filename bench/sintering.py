@@ -137,11 +137,13 @@ def main():
     parser.add_argument("--largest", type=int, default=1000000, help="packing")
     parser.add_argument("--only", choices=("error", "size"), help="half of the measurements")
     parser.add_argument("--start", action="append", choices=STARTS, help="of the error; all three unless told, may be repeated")
-    parser.add_argument("--draw", nargs="+", metavar="FILE", help="draw what earlier runs printed, measure nothing")
+    parser.add_argument("--draw", nargs="+", metavar="FILE", help="compare and draw what earlier runs printed, measure nothing")
     given = parser.parse_args()
     if given.draw:
         rows = [json.loads(line) for name in given.draw for line in open(name, encoding="utf-8") if line.startswith("{")]
-        draw([row for row in rows if row["case"] == "error"], [row for row in rows if row["case"] == "size"], given.output)
+        error_rows = [row for row in rows if row["case"] == "error"]
+        factors(error_rows)
+        draw(error_rows, [row for row in rows if row["case"] == "size"], given.output)
         return
     with tempfile.TemporaryDirectory() as folder:
         size_rows = sizes(folder, given.largest) if given.only != "error" else []
