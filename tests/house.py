@@ -21,9 +21,8 @@ BELOW = {
     "tools/analyze": ["lib/core", "lib/io", "lib/physics", "lib/mechanics", "lib/cli"],
 }
 # Folders and files with longer lines from before this was checked: to be shortened by whoever changes them.
-LONGER_YET = ("lib/core/contacts", "lib/core/spatial_order.h", "lib/numerics/", "lib/physics/bond_law.h",
-              "lib/physics/schedule.cpp", "tools/sinter/", "tools/analyze/", "tests/physics/", "tests/data/",
-              "tests/unit/stiffness_test.cpp",
+LONGER_YET = ("lib/core/contacts", "lib/core/spatial_order.h", "lib/physics/bond_law.h",
+              "lib/physics/schedule.cpp", "tests/data/",
               "tests/cli/helper.bash", "bench/", "workflows/", "docs/mechanics.md", "docs/sintering.md",
               "docs/dem-state.5", "demo.mk")
 TEXT = (".cpp", ".h", ".py", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")

@@ -7,9 +7,9 @@
 
 namespace kiln::numerics {
 
-/// Unilateral constraints w <= limit on the closing w of pairs, by augmented Lagrangian: the reaction max(0, lambda + s (w - limit))
-/// of a spring s with a multiplier lambda that takes over the reaction, so that the limit is met exactly with a spring of ordinary
-/// stiffness. Source: Nocedal & Wright, Numerical Optimization, 2006, section 17.4.
+/// Unilateral constraints w <= limit on the closing w of pairs, by augmented Lagrangian: the reaction max(0, lambda + s (w -
+/// limit)) of a spring s with a multiplier lambda that takes over the reaction, so that the limit is met exactly with a spring of
+/// ordinary stiffness. Source: Nocedal & Wright, Numerical Optimization, 2006, section 17.4.
 class ClosingLimits {
    public:
     /// Forgets all; `pairs` rows without a limit, springs of the given stiffness.

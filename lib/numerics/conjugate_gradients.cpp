@@ -88,8 +88,8 @@ double ConjugateGradients::turn(const Stiffness& stiffness, const Eigen::Matrix3
     return curvature + p_.strain.dot(q_.strain);
 }
 
-LinearSolve ConjugateGradients::solve(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
-                                      const Motion& b, Motion& x, const LinearGoal& goal) {
+LinearSolve ConjugateGradients::solve(const Stiffness& stiffness, const Preconditioner& preconditioner,
+                                      const Eigen::Matrix3d& allowed, const Motion& b, Motion& x, const LinearGoal& goal) {
     for (QuadMotion* motion : {&x_, &p_, &q_}) {
         std::fill(motion->displacement.begin(), motion->displacement.end(), Quad{});
         motion->strain.setZero();
@@ -100,7 +100,8 @@ LinearSolve ConjugateGradients::solve(const Stiffness& stiffness, const Precondi
     project(r_, allowed);
 
     const double start = advance(stiffness, preconditioner, allowed, 0.0);
-    const double relative = goal.scale > 0.0 ? std::clamp(std::sqrt(start / goal.scale), goal.tightest, goal.loosest) : goal.tightest;
+    const double relative =
+        goal.scale > 0.0 ? std::clamp(std::sqrt(start / goal.scale), goal.tightest, goal.loosest) : goal.tightest;
     const double wanted = std::max(relative * relative * start, goal.enough);
     double product = start, ratio = 0.0;
     LinearSolve report{.start = start};

@@ -20,8 +20,8 @@ struct LinearGoal {
     int most_iterations = 5000;
 };
 
-/// Solves K x = b from x = 0 until the goal is met. The iteration is in single precision: goals below 1e-5 or so are for the caller to
-/// reach, by solving again for what is left of b.
+/// Solves K x = b from x = 0 until the goal is met. The iteration is in single precision: goals below 1e-5 or so are for the caller
+/// to reach, by solving again for what is left of b.
 ///
 /// A singular K (particles without contacts, clusters that hang on nothing) is allowed as long as b does no work on its null space.
 /// allowed: projector onto the strains that the box may take. Work vectors are kept between calls.
@@ -29,8 +29,8 @@ class ConjugateGradients {
    public:
     explicit ConjugateGradients(std::size_t particles);
 
-    LinearSolve solve(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed, const Motion& b,
-                      Motion& x, const LinearGoal& goal);
+    LinearSolve solve(const Stiffness& stiffness, const Preconditioner& preconditioner, const Eigen::Matrix3d& allowed,
+                      const Motion& b, Motion& x, const LinearGoal& goal);
 
    private:
     /// Takes step * p off what is left, and gives the product of what is left, r, and its preconditioned z.

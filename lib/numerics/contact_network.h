@@ -1,11 +1,11 @@
 // contact_network.h: the contacts of a packing, packed for one pass through memory, and sums of pair forces over them.
 //
 // Unknowns are the particles' displacements u relative to the affine motion and the strains e of the box along its axes. A contact
-// from i to j with vector l moves by du = u_j - u_i + e*l (component by component). With U = u + e*x, where x is the position, this is
-// U_j - U_i + e*(shift by box lengths), so that only contacts through a face of the box meet the strains one by one.
+// from i to j with vector l moves by du = u_j - u_i + e*l (component by component). With U = u + e*x, where x is the position, this
+// is U_j - U_i + e*(shift by box lengths), so that only contacts through a face of the box meet the strains one by one.
 //
-// Particles are cut into chunks of fixed size. A contact inside a chunk stands there once; one between two chunks stands in both, and
-// each adds the force on its own particle. So chunks are independent, and results do not depend on the number of threads.
+// Particles are cut into chunks of fixed size. A contact inside a chunk stands there once; one between two chunks stands in both,
+// and each adds the force on its own particle. So chunks are independent, and results do not depend on the number of threads.
 #pragma once
 
 #include <span>
@@ -90,7 +90,8 @@ class ContactNetwork {
     void gather_range(std::size_t begin, std::size_t end, const double* total, double* forces, const Force& force) const;
     void displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const;
     template <typename Force>
-    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<double>& total, Motion& forces, const Force& force) const;
+    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<double>& total, Motion& forces,
+                      const Force& force) const;
     template <typename Force>
     Vec3 gather_crossing(const Chunk& chunk, const Vec3& strain, const double* total, double* forces, const Force& force) const;
 
@@ -101,7 +102,8 @@ class ContactNetwork {
 };
 
 template <bool AddFirst, bool AddSecond, typename Force>
-void ContactNetwork::gather_range(std::size_t begin, std::size_t end, const double* total, double* forces, const Force& force) const {
+void ContactNetwork::gather_range(std::size_t begin, std::size_t end, const double* total, double* forces,
+                                  const Force& force) const {
     for (std::size_t entry = begin; entry < end; ++entry) {
         const std::size_t i = 3 * static_cast<std::size_t>(first[entry]), j = 3 * static_cast<std::size_t>(second[entry]);
         const Vec3 f = force(entry, Vec3(total[j] - total[i], total[j + 1] - total[i + 1], total[j + 2] - total[i + 2]));

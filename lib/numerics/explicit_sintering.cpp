@@ -27,7 +27,8 @@ ExplicitSintering::ExplicitSintering(State state, const SinteringSettings& setti
     if (kinetics_.any_rigid()) throw Error("the explicit method has no law for pairs of materials that do not diffuse");
     const State& working = packing_.working();
     for (std::size_t kind = 0; kind < working.materials.size() * working.materials.size(); ++kind)
-        if (std::isfinite(kinetics_.neck_limit(kind))) throw Error("the explicit method has no law for the dihedral limit of a neck");
+        if (std::isfinite(kinetics_.neck_limit(kind)))
+            throw Error("the explicit method has no law for the dihedral limit of a neck");
     const Particles& particles = packing_.particles();
     for (std::size_t row = 0; row < packing_.size(); ++row) {
         const Material& material = working.materials[static_cast<std::size_t>(particles.material[row])];
@@ -78,14 +79,17 @@ ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, con
     result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * overlap * overlap / diffusion[kind];
     const double shear = physics::tangential_viscosity(settings_.constants, overlap, reduced) / diffusion[kind];
     const double along = normal.dot(opening);
-    result.force = (physics::sintering_force(settings_.constants, reduced, kinetics_.surface_energy(kind)) + result.viscosity * along) * normal +
-                   shear * (opening - along * normal);
+    result.force =
+        (physics::sintering_force(settings_.constants, reduced, kinetics_.surface_energy(kind)) + result.viscosity * along) *
+            normal +
+        shear * (opening - along * normal);
     result.viscosity += shear;
     return result;
 }
 
 ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<double>& diffusion) {
-    // Sums go by particles: pairs in the list that do not touch add zeros, so the result does not depend on how far the list reaches.
+    // Sums go by particles: pairs in the list that do not touch add zeros, so the result does not depend on how far the list
+    // reaches.
     const std::size_t chunks = (packing_.size() + chunk - 1) / chunk;
     std::vector<BoxForce> parts(chunks);
 #pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
@@ -191,7 +195,8 @@ StepRecord ExplicitSintering::advance(double latest_time, double highest_density
     for (int step = 0; step < most_steps; ++step) {
         step_once(latest_time, highest_density, record);
         ++record.attempts;
-        const bool reached = packing_.time() >= latest_time || packing_.density() >= highest_density * (1.0 - 2.0 * landing_accuracy);
+        const bool reached =
+            packing_.time() >= latest_time || packing_.density() >= highest_density * (1.0 - 2.0 * landing_accuracy);
         if (reached || std::abs(std::log(packing_.density() / density)) > record_change) break;
     }
     steps_ += static_cast<std::size_t>(record.attempts);
@@ -206,11 +211,14 @@ StepRecord ExplicitSintering::advance(double latest_time, double highest_density
 
 Json ExplicitSintering::numbers() const { return {{"strain_rate", triple(strain_rate_)}}; }
 
-std::vector<NamedArray> ExplicitSintering::arrays() const { return {{"velocity", {{packing_.size(), 3}, motion_over(1.0).displacement}}}; }
+std::vector<NamedArray> ExplicitSintering::arrays() const {
+    return {{"velocity", {{packing_.size(), 3}, motion_over(1.0).displacement}}};
+}
 
 void ExplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
     const std::vector<double> velocity = column_of(arrays, "velocity", packing_.size());
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle) velocity_[particle] = Eigen::Map<const Vec3>(&velocity[3 * particle]);
+    for (std::size_t particle = 0; particle < packing_.size(); ++particle)
+        velocity_[particle] = Eigen::Map<const Vec3>(&velocity[3 * particle]);
     strain_rate_ = triple_from(numbers.at("strain_rate"));
     list_pairs();
 }

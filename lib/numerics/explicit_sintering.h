@@ -1,13 +1,14 @@
-// explicit_sintering.h: sintering with inertia, mass-scaled and integrated explicitly, as in Dosta et al. 2017: the reference method.
+// explicit_sintering.h: sintering with inertia, mass-scaled and integrated explicitly, as in Dosta et al. 2017: the reference
+// method.
 #pragma once
 
 #include "numerics/sintering.h"
 
 namespace kiln::numerics {
 
-/// Central differences of S m dv/dt = sum of contact forces (Eq. 1), with velocities half a step behind the positions. The true inertia
-/// (S = 1) is of no account, and the time step would be 1e-19 s; a mass scaled by S = 1e20 makes steps affordable and the motion late.
-/// The strain rates of a periodic box have the inertia of each particle moving by its own diameter.
+/// Central differences of S m dv/dt = sum of contact forces (Eq. 1), with velocities half a step behind the positions. The true
+/// inertia (S = 1) is of no account, and the time step would be 1e-19 s; a mass scaled by S = 1e20 makes steps affordable and the
+/// motion late. The strain rates of a periodic box have the inertia of each particle moving by its own diameter.
 class ExplicitSintering : public SinteringMethod {
    public:
     /// Throws Error for what the method has no law for: pairs that do not diffuse, a dihedral limit, a material without density.

@@ -62,8 +62,8 @@ double ImplicitSintering::first_duration() {
 }
 
 Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& locked) const {
-    // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that contacts
-    // do reach through, so that loose clusters move with the flow of the whole.
+    // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that
+    // contacts do reach through, so that loose clusters move with the flow of the whole.
     const std::array<bool, 3> percolates = percolating_axes(packing_.size(), candidates_.touching());
     std::vector<Vec3> basis;
     Vec3 followers = Vec3::Zero();
@@ -207,7 +207,8 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
             break;
         if (rejected == most_rejections) {
             if (trial.leapt)
-                throw Error("particles leap by more than a radius however short the step is at " + std::to_string(packing_.time()) + " s");
+                throw Error("particles leap by more than a radius however short the step is at " + std::to_string(packing_.time()) +
+                            " s");
             break;  // the record says that it did not converge
         }
         const double factor = trial.leapt ? smallest_factor : std::clamp(0.8 * room_for(trial), smallest_factor, 0.7);
@@ -236,8 +237,8 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
     }
     idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
     if (idle_steps_ > most_idle_steps && std::isfinite(highest_density))
-        throw Error("the density stays at " + std::to_string(packing_.density()) + "; no contact is left that densifies the box, so " +
-                    std::to_string(highest_density) + " cannot be reached");
+        throw Error("the density stays at " + std::to_string(packing_.density()) +
+                    "; no contact is left that densifies the box, so " + std::to_string(highest_density) + " cannot be reached");
     StepRecord record = finish(trial, duration);
     record.duration = record.time - start;
     return record;

@@ -16,7 +16,8 @@ namespace {
 constexpr double same = 1e-15;  // relative, of equivalent times
 constexpr int most_halvings = 200;
 
-/// Largest contact radius over particle radius at equilibrium of grain boundary and surface, a/R = sin(psi/2); Bouvard & McMeeking 1996.
+/// Largest contact radius over particle radius at equilibrium of grain boundary and surface, a/R = sin(psi/2); Bouvard & McMeeking
+/// 1996.
 double neck_limit_of(const Material& material) {
     return material.dihedral_angle ? std::sin(0.5 * *material.dihedral_angle) : std::numeric_limits<double>::infinity();
 }
@@ -34,7 +35,8 @@ Kinetics::Kinetics(const State& state, const physics::Schedule& schedule)
             neck_limit_.push_back(std::min(neck_limit_of(a), neck_limit_of(b)));
         }
     for (const MaterialPair& pair : state.contacts)
-        for (const auto& [a, b] : {std::pair(pair.materials[0], pair.materials[1]), std::pair(pair.materials[1], pair.materials[0])}) {
+        for (const auto& [a, b] :
+             {std::pair(pair.materials[0], pair.materials[1]), std::pair(pair.materials[1], pair.materials[0])}) {
             if (pair.diffusion_parameter) given_[row(a, b)] = *pair.diffusion_parameter;
             if (pair.surface_energy) energy_[row(a, b)] = *pair.surface_energy;
         }

@@ -19,7 +19,9 @@ class Kinetics {
     const physics::Schedule& schedule() const { return schedule_; }
 
     /// Row of a pair of materials in the tables.
-    std::size_t row(std::int32_t a, std::int32_t b) const { return static_cast<std::size_t>(a) * materials_ + static_cast<std::size_t>(b); }
+    std::size_t row(std::int32_t a, std::int32_t b) const {
+        return static_cast<std::size_t>(a) * materials_ + static_cast<std::size_t>(b);
+    }
 
     /// The same of the two particles of a pair.
     std::size_t row(const Particles& particles, const Pair& pair) const {
@@ -32,7 +34,8 @@ class Kinetics {
     bool rigid(std::size_t row) const { return rigid_[row]; }
     bool any_rigid() const { return any_rigid_; }
 
-    /// Largest contact radius over the smaller particle's radius, sin(psi/2) of the dihedral angle psi; infinity where none is given.
+    /// Largest contact radius over the smaller particle's radius, sin(psi/2) of the dihedral angle psi; infinity where none is
+    /// given.
     double neck_limit(std::size_t row) const { return neck_limit_[row]; }
 
     /// Delta of each pair of materials at a temperature (K), m5/(N s).

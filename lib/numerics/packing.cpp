@@ -95,7 +95,8 @@ Vec3 Packing::body_stretch(const Motion& motion) const {
         sum_after += m * after;
         square_after += m * after.cwiseProduct(after);
     }
-    const Vec3 spread = square / mass - (sum / mass).cwiseAbs2(), spread_after = square_after / mass - (sum_after / mass).cwiseAbs2();
+    const Vec3 spread = square / mass - (sum / mass).cwiseAbs2(),
+               spread_after = square_after / mass - (sum_after / mass).cwiseAbs2();
     const double least = 1e-12 * largest_radius_ * largest_radius_;  // a body of one layer does not shrink across it
     for (int axis = 0; axis < 3; ++axis)
         if (!periodic[static_cast<std::size_t>(axis)] && spread[axis] > least)
@@ -134,7 +135,8 @@ void Packing::apply(const Motion& motion, double until, double temperature) {
 State Packing::state() const {
     State result = state_;
     std::vector<std::int32_t> back(order_.size());
-    for (std::size_t row = 0; row < order_.size(); ++row) back[static_cast<std::size_t>(order_[row])] = static_cast<std::int32_t>(row);
+    for (std::size_t row = 0; row < order_.size(); ++row)
+        back[static_cast<std::size_t>(order_[row])] = static_cast<std::int32_t>(row);
     result.particles = take_rows(state_.particles, back);
     for (Vec3& position : result.particles.position) position = result.box.wrap(position);
     return result;

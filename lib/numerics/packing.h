@@ -1,4 +1,5 @@
-// packing.h: a packing on its way through sintering: particles in memory order, pairs near touch, density, strains; either method's.
+// packing.h: a packing on its way through sintering: particles in memory order, pairs near touch, density, strains; either
+// method's.
 #pragma once
 
 #include <string>
@@ -12,8 +13,8 @@ namespace kiln::numerics {
 /// Which faces of the box are periodic.
 enum class Faces { as_given, periodic, free };
 
-/// Owns the state while it sinters. Particles stand in the order of a space-filling curve, positions unwrapped, so that the images of
-/// pairs stay what they were when the list was made.
+/// Owns the state while it sinters. Particles stand in the order of a space-filling curve, positions unwrapped, so that the images
+/// of pairs stay what they were when the list was made.
 class Packing {
    public:
     /// Throws Error where there are no particles, bonds, or centres that coincide.
@@ -43,7 +44,8 @@ class Packing {
     /// Vector between the centres of a pair, m; its radii, m.
     Vec3 vector(const Pair& pair) const { return pair_vector(state_.box, state_.particles.position, pair); }
     std::pair<double, double> radii(const Pair& pair) const {
-        return {state_.particles.radius[static_cast<std::size_t>(pair.i)], state_.particles.radius[static_cast<std::size_t>(pair.j)]};
+        return {state_.particles.radius[static_cast<std::size_t>(pair.i)],
+                state_.particles.radius[static_cast<std::size_t>(pair.j)]};
     }
 
     /// Bound of how much any gap closes under a motion, m.

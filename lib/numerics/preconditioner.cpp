@@ -8,10 +8,12 @@ namespace kiln::numerics {
 
 namespace {
 
-/// Part of a diagonal block's trace below which what elimination left of it is rounding: the block moves freely with what hangs on it.
+/// Part of a diagonal block's trace below which what elimination left of it is rounding: the block moves freely with what hangs on
+/// it.
 constexpr double smallest_pivot = 1e-6;
 
-/// Inverse of a pivot; zero along directions that are free, so that a cluster which hangs on nothing stays where its last particle is.
+/// Inverse of a pivot; zero along directions that are free, so that a cluster which hangs on nothing stays where its last particle
+/// is.
 Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace) {
     const double floor = smallest_pivot * trace;
     const double first = pivot(0, 0), second = pivot(1, 1) - pivot(1, 0) * pivot(1, 0) / first;  // D of its L D L^T
@@ -38,7 +40,8 @@ Preconditioner::Preconditioner(const ContactNetwork& network)
     column_.resize(row_begin_.back());
     lower_.resize(block_floats * row_begin_.back() + 1);
     std::vector<std::size_t> next(row_begin_.begin(), row_begin_.end() - 1);
-    for (const ContactNetwork::Chunk& chunk : network.chunks())  // entries are sorted by their first particle, so rows come out sorted
+    for (const ContactNetwork::Chunk& chunk :
+         network.chunks())  // entries are sorted by their first particle, so rows come out sorted
         for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry) {
             place_[entry] = next[static_cast<std::size_t>(network.second[entry])]++;
             column_[place_[entry]] = network.first[entry];

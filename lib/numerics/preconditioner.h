@@ -8,8 +8,9 @@
 
 namespace kiln::numerics {
 
-/// Incomplete block factorisation L D L^T without fill, IC(0), of the 3x3 blocks inside each chunk; contacts between chunks count on
-/// the diagonal only. The strains of the box have their own block. Exact where no particle of a chunk has two neighbours in later rows.
+/// Incomplete block factorisation L D L^T without fill, IC(0), of the 3x3 blocks inside each chunk; contacts between chunks count
+/// on the diagonal only. The strains of the box have their own block. Exact where no particle of a chunk has two neighbours in
+/// later rows.
 class Preconditioner {
    public:
     explicit Preconditioner(const ContactNetwork& network);

@@ -55,7 +55,8 @@ inline Quad sum(Quad a) {
 
 /// Scalar products of three vectors with v, in x, y and z.
 inline Quad transposed_product(Quad a, Quad b, Quad c, Quad v) {
-    const Quad::Lanes low = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 1, 5), high = __builtin_shufflevector(a.lanes, b.lanes, 2, 6, 3, 7);
+    const Quad::Lanes low = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 1, 5),
+                      high = __builtin_shufflevector(a.lanes, b.lanes, 2, 6, 3, 7);
     const Quad x{__builtin_shufflevector(low, c.lanes, 0, 1, 4, 7)}, y{__builtin_shufflevector(low, c.lanes, 2, 3, 5, 7)};
     const Quad z{__builtin_shufflevector(high, c.lanes, 0, 1, 6, 7)};
     return x * all<0>(v) + y * all<1>(v) + z * all<2>(v);

@@ -45,7 +45,8 @@ RigidClusters::RigidClusters(const Box& box, std::span<const Vec3> position, std
             first_offset.push_back(image);
         }
         node_[row] = node_of_root[root];
-        for (std::size_t axis = 0; axis < 3; ++axis) offset_[row][axis] = image[axis] - first_offset[static_cast<std::size_t>(node_[row])][axis];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            offset_[row][axis] = image[axis] - first_offset[static_cast<std::size_t>(node_[row])][axis];
     }
 }
 

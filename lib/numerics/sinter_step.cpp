@@ -15,7 +15,7 @@ constexpr int most_newton = 60;
 constexpr int most_searches = 12;
 constexpr int most_conjugate_gradients = 5000;
 constexpr double rounding = 1e-6;           // error of a motion below which a direction that leads nowhere is made of rounding
-constexpr double overshoot = 0.5;          // slope left at the end of a Newton step, relative to its start, that asks for a line search
+constexpr double overshoot = 0.5;  // slope left at the end of a Newton step, relative to its start, that asks for a line search
 constexpr double least_tangent = 0.1;      // of the tangent at a pair's own end of the step
 constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
 constexpr double tightest_linear = 1e-3;
@@ -76,7 +76,8 @@ void SinterStep::start_geometry(const std::vector<PairStep>& step) {
         const double share = pair.overlap >= 0.0 ? 1.0 : 0.0, goal = alone(pair, share);
         // Mean overlap of the step as the pair alone would have it: at its start a new contact has no neck to resist shear.
         const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + goal);
-        rows_[row] = {pair.vector / pair.distance, pair.overlap, pair.cubic, goal, share * pair.force, pair.shear * share * mean_overlap};
+        rows_[row] = {pair.vector / pair.distance,      pair.overlap, pair.cubic, goal, share * pair.force,
+                      pair.shear * share * mean_overlap};
     }
     pressure_volume_ = settings_.pressure * box_.volume();
     take_geometry(step);
@@ -111,7 +112,8 @@ void SinterStep::take_geometry(const std::vector<PairStep>& step) {
         }
     });
     const Motion rest(network_.particles());
-    network_.gather(rest, drive_, total_, [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].drive * entries_[entry].normal; });
+    network_.gather(rest, drive_, total_,
+                    [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].drive * entries_[entry].normal; });
     start_limits(step);
 }
 
@@ -132,13 +134,15 @@ void SinterStep::forces(const Motion& motion, Motion& unbalanced, bool secant) {
         const PairForce& pair = entries_[entry];
         const double along = pair.normal.dot(du);  // opening
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap - along);
-        // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least a
-        // part of the tangent there.
-        const double least = secant ? (square(pair.goal) + pair.goal * reached + square(reached)) / 3.0 : least_tangent * square(pair.goal);
+        // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least
+        // a part of the tangent there.
+        const double least =
+            secant ? (square(pair.goal) + pair.goal * reached + square(reached)) / 3.0 : least_tangent * square(pair.goal);
         const double limit = limits_.any() ? limits_.reaction(static_cast<std::size_t>(network_.pair[entry]), -along) : 0.0;
         const double tangent = pair.cubic * std::max(square(reached), reached < pair.goal ? least : 0.0);
         stiffness_.set(entry, tangent + (limit > 0.0 ? limits_.stiffness() : 0.0), pair.tangential);
-        return (pair.drive - resistance(pair.cubic, start, reached) - limit - pair.tangential * along) * pair.normal + pair.tangential * du;
+        return (pair.drive - resistance(pair.cubic, start, reached) - limit - pair.tangential * along) * pair.normal +
+               pair.tangential * du;
     });
     strain_force_ = unbalanced.strain;
     unbalanced.strain += pressure_volume_;
@@ -178,7 +182,8 @@ bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
         // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
         const LinearGoal goal{.loosest = loosest_linear, .tightest = tightest_linear, .scale = work_,
                               .enough = square(tolerance_share * tolerance) * work_, .most_iterations = most_conjugate_gradients};
-        const LinearSolve linear = solver_.solve(stiffness_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, goal);
+        const LinearSolve linear =
+            solver_.solve(stiffness_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, goal);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
         const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction

@@ -2,9 +2,9 @@
 //
 // Balance of all contact forces at the end of the step makes the sum over contacts
 //     D(w) + kt/2 |u_t|^2 - f w,   D'(w) = K/(3 I) [(h + w)+^3 - h+^3]
-// stationary, where w is the closing along the contact normal, u_t the tangential motion, h the overlap at the start, K h^2/Delta the
-// normal viscosity, I the integral of Delta over the step, kt the tangential viscosity over I and f the sintering force. The cube is
-// the exact integral of the viscosity over the overlap: an isolated pair is exact for a step of any length.
+// stationary, where w is the closing along the contact normal, u_t the tangential motion, h the overlap at the start, K h^2/Delta
+// the normal viscosity, I the integral of Delta over the step, kt the tangential viscosity over I and f the sintering force. The
+// cube is the exact integral of the viscosity over the overlap: an isolated pair is exact for a step of any length.
 #pragma once
 
 #include <span>

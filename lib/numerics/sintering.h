@@ -1,5 +1,5 @@
-// sintering.h: what a method of sintering is asked for and what it tells of each step; implicit_sintering.h and explicit_sintering.h are
-// the methods.
+// sintering.h: what a method of sintering is asked for and what it tells of each step; implicit_sintering.h and
+// explicit_sintering.h are the methods.
 #pragma once
 
 #include <array>
@@ -76,7 +76,9 @@ class SinteringMethod {
 
 /// A vector as JSON, and back.
 inline Json triple(const Vec3& vector) { return {vector[0], vector[1], vector[2]}; }
-inline Vec3 triple_from(const Json& json) { return Vec3(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()); }
+inline Vec3 triple_from(const Json& json) {
+    return Vec3(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
+}
 
 /// The f8 array of three columns and the given number of rows; throws Error where there is none.
 std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::string& name, std::size_t rows);

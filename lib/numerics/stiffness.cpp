@@ -32,7 +32,8 @@ void Stiffness::multiply_range(std::size_t begin, std::size_t end, const Quad* t
         if constexpr (AddFirst) forces[i] -= f;
         if constexpr (AddSecond) forces[j] += f;
     };
-    // Neighbouring entries add to the same particle, each waiting for the one before: from both halves in turn they wait half as long.
+    // Neighbouring entries add to the same particle, each waiting for the one before: from both halves in turn they wait half as
+    // long.
     const std::size_t half = (end - begin) / 2;
     for (std::size_t entry = begin; entry < begin + half; ++entry) {
         add(entry);

@@ -1,5 +1,5 @@
-// stiffness.h: the stiffness of a contact network and its product with a motion, in single precision, which halves the memory traffic
-// and doubles what one instruction does. Newton's iteration, in double precision, corrects what that leaves out.
+// stiffness.h: the stiffness of a contact network and its product with a motion, in single precision, which halves the memory
+// traffic and doubles what one instruction does. Newton's iteration, in double precision, corrects what that leaves out.
 #pragma once
 
 #include <vector>
@@ -49,8 +49,8 @@ class Stiffness {
     /// First half of a product, for one chunk: total displacements u + e*x of its particles.
     void displace(std::size_t chunk, const QuadMotion& motion, std::vector<Quad>& total) const;
 
-    /// Second half for one chunk, once all chunks are displaced: forces on its particles. Gives the chunk's part of the work conjugate
-    /// to the strains.
+    /// Second half for one chunk, once all chunks are displaced: forces on its particles. Gives the chunk's part of the work
+    /// conjugate to the strains.
     Vec3 multiply(std::size_t chunk, const Vec3& strain, const std::vector<Quad>& total, QuadMotion& forces) const;
 
    private:

@@ -25,8 +25,8 @@ struct Contacts {
     std::vector<double> force, normal, tangential;  // N; viscosities
     double unit = 0.0;                              // N s/m
 
-    /// Square of the energy norm of the contact forces under affine motion, by which accuracy is measured: in a lattice they cancel on
-    /// every particle, and what is left to solve for is rounding.
+    /// Square of the energy norm of the contact forces under affine motion, by which accuracy is measured: in a lattice they cancel
+    /// on every particle, and what is left to solve for is rounding.
     double square_under(const Vec3& strain_rate, double drive) const {
         double sum = 0.0;
         for (std::size_t row = 0; row < pairs.size(); ++row) {

@@ -23,8 +23,8 @@ struct ViscousResponse {
 };
 
 /// Imposes a unit strain rate along each axis, and none, with the particles free to move in the box, at the state's contacts.
-/// A contact that has just formed has no viscosity, and the response at that instant no meaning: overlaps count as at least 1e-3 R*.
-/// temperature: K. Contacts that do not diffuse hold their particles together. Throws Error where an axis is not periodic.
+/// A contact that has just formed has no viscosity, and the response at that instant no meaning: overlaps count as at least 1e-3
+/// R*. temperature: K. Contacts that do not diffuse hold their particles together. Throws Error where an axis is not periodic.
 ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature);
 
 }  // namespace kiln::numerics

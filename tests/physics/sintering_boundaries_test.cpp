@@ -19,7 +19,8 @@ constexpr double radius = 50e-9;
 State face_centred(double s) {
     const double cell = 2.0 * radius * (1.0 - s) / std::sqrt(0.5);
     std::vector<Vec3> positions;
-    for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)}) positions.push_back(site * cell);
+    for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)})
+        positions.push_back(site * cell);
     return state_of(positions, std::vector<double>(4, radius), Vec3::Constant(cell), true);
 }
 
@@ -47,7 +48,8 @@ TEST_CASE("a simple cubic cell under pressure closes as a pair pressed with the 
     const int steps = 20000;
     const double dt = time / steps;
     for (int step = 0; step < steps; ++step) {
-        const double t = step * dt, a = rate(h, t), b = rate(h + 0.5 * dt * a, t + 0.5 * dt), c = rate(h + 0.5 * dt * b, t + 0.5 * dt);
+        const double t = step * dt, a = rate(h, t), b = rate(h + 0.5 * dt * a, t + 0.5 * dt),
+                     c = rate(h + 0.5 * dt * b, t + 0.5 * dt);
         h += dt / 6.0 * (a + 2.0 * b + 2.0 * c + rate(h + dt * c, t + dt));
     }
     CHECK(deviation(overlap_of(end, 2), h) < 1e-4);
@@ -85,7 +87,8 @@ TEST_CASE("a face-centred film shrinks across its plane by C12 and C11 of its vi
     const physics::ContactConstants constants;
     const double shear = physics::tangential_viscosity(constants, overlap, 0.5 * radius),
                  normal = physics::normal_viscosity_factor(constants, 0.5 * radius) * overlap * overlap;
-    // Lattice of normal and tangential links: C11 = sqrt2 (kn + kt)/l, C12 = (kn - kt)/(sqrt2 l), so free to film is C11/(C11 + 2 C12).
+    // Lattice of normal and tangential links: C11 = sqrt2 (kn + kt)/l, C12 = (kn - kt)/(sqrt2 l), so free to film is C11/(C11 + 2
+    // C12).
     CHECK(deviation(rate(true) / rate(false), 2.0 * normal / (normal + shear)) < 1e-4);
 }
 

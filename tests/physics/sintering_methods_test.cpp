@@ -25,7 +25,8 @@ State explicitly_sintered(State state, double time, double mass_scaling) {
 /// Sum of the particles' displacements over their number, over a radius: the momentum that a run without outer forces has gained.
 double drift(const State& before, const State& after) {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t row = 0; row < before.particles.size(); ++row) sum += after.particles.position[row] - before.particles.position[row];
+    for (std::size_t row = 0; row < before.particles.size(); ++row)
+        sum += after.particles.position[row] - before.particles.position[row];
     return sum.norm() / (radius * static_cast<double>(before.particles.size()));
 }
 
@@ -47,7 +48,8 @@ State shaken_crystal() {
         for (int y = 0; y < cells; ++y)
             for (int z = 0; z < cells; ++z)
                 for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)}) {
-                    const Vec3 shaken = cell * (site + Vec3(x, y, z)) + 0.01 * radius * Vec3(shake(random), shake(random), shake(random));
+                    const Vec3 shaken =
+                        cell * (site + Vec3(x, y, z)) + 0.01 * radius * Vec3(shake(random), shake(random), shake(random));
                     if (shake(random) > -0.7) positions.push_back(shaken);
                 }
     return state_of(positions, std::vector<double>(positions.size(), radius), Vec3::Constant(cells * cell), true);
@@ -92,7 +94,8 @@ TEST_CASE("explicit: a pair with little inertia closes by the pair law") {
     const State pair = state_of({centre, centre + Vec3(start, 0.0, 0.0)}, {radius, radius}, Vec3::Constant(1e-6), false);
     double before = 1.0;
     for (const double scaling : {1e19, 1e18, 1e17}) {
-        const double miss = deviation(2.0 * radius - distance(explicitly_sintered(pair, time, scaling), 0, 1), pair_law(4e-9, 0.5 * radius, time));
+        const double miss =
+            deviation(2.0 * radius - distance(explicitly_sintered(pair, time, scaling), 0, 1), pair_law(4e-9, 0.5 * radius, time));
         CHECK(miss < 0.2 * before);
         before = miss;
     }

@@ -36,7 +36,8 @@ TEST_CASE("every contact of a straight chain closes as a pair does") {
         CHECK(deviation(2.0 * radius - distance(end, link, link + 1), pair_law(overlap, 0.5 * radius, time)) < 1e-6);
 }
 
-TEST_CASE("simple, body-centred and face-centred cubic cells follow s^3 = s0^3 + 0.84375 Delta gamma t/R^4 whatever their coordination") {
+TEST_CASE(
+    "simple, body-centred and face-centred cubic cells follow s^3 = s0^3 + 0.84375 Delta gamma t/R^4 whatever their coordination") {
     const double radius = 50e-9, start = 0.01, time = 50.0;
     const double reached = std::cbrt(start * start * start + 0.84375 * diffusion() * surface_energy() * time / std::pow(radius, 4));
     struct Lattice {
@@ -72,7 +73,8 @@ TEST_CASE("lengths times lambda take times times lambda^4") {
 }
 
 TEST_CASE("a wanted density is met to 1e-6 and the same state is reached by way of others") {
-    numerics::ImplicitSintering direct(random_packing(150, 0.5, 1.0), settings()), stopped(random_packing(150, 0.5, 1.0), settings());
+    numerics::ImplicitSintering direct(random_packing(150, 0.5, 1.0), settings()),
+        stopped(random_packing(150, 0.5, 1.0), settings());
     const auto reach = [](numerics::ImplicitSintering& sintering, double density) {
         while (sintering.relative_density() < density * (1.0 - 1e-6)) REQUIRE(sintering.advance(endless, density).converged);
         CHECK(deviation(sintering.relative_density(), density) < 1e-6);
@@ -84,7 +86,9 @@ TEST_CASE("a wanted density is met to 1e-6 and the same state is reached by way 
 
 TEST_CASE("smaller tolerance, smaller error of the density at a fixed time") {
     const double time = 60.0;
-    const auto density = [&](double tolerance) { return relative_density(sintered(random_packing(150, 0.5, 1.0), time, settings(tolerance))); };
+    const auto density = [&](double tolerance) {
+        return relative_density(sintered(random_packing(150, 0.5, 1.0), time, settings(tolerance)));
+    };
     const double reference = density(1e-5);
     CHECK(deviation(density(1e-3), reference) < 1e-3);
     CHECK(deviation(density(1e-4), reference) < 3e-4);
@@ -102,7 +106,8 @@ TEST_CASE("particles without contacts move with the box, and a density that noth
 
 TEST_CASE("axes that no contacts reach through follow those that contacts do reach through") {
     const double radius = 50e-9, spacing = 2.0 * radius - 1e-9;
-    State rod = state_of({{0.5 * spacing, 3e-7, 3e-7}, {1.5 * spacing, 3e-7, 3e-7}}, {radius, radius}, {2.0 * spacing, 6e-7, 6e-7}, true);
+    State rod =
+        state_of({{0.5 * spacing, 3e-7, 3e-7}, {1.5 * spacing, 3e-7, 3e-7}}, {radius, radius}, {2.0 * spacing, 6e-7, 6e-7}, true);
     numerics::ImplicitSintering sintering(std::move(rod), settings());
     const double time = 20.0;
     while (sintering.time() < time) sintering.advance(time, endless);
@@ -140,16 +145,19 @@ TEST_CASE("size ratios of 10 and 100 stay finite and converge") {
         for (std::size_t row = 1; row < radii.size(); ++row) {
             const Vec3 apart = end.box.wrap(end.particles.position[row] + Vec3::Constant(2e-6)) -
                                end.box.wrap(end.particles.position[0] + Vec3::Constant(2e-6));
-            CHECK(deviation(large + small - apart.norm(), pair_law(0.02 * small, physics::reduced_radius(large, small), time)) < 1e-4);
+            CHECK(deviation(large + small - apart.norm(), pair_law(0.02 * small, physics::reduced_radius(large, small), time)) <
+                  1e-4);
         }
     }
 }
 
 TEST_CASE("coincident centres and missing data are refused by name") {
     const Vec3 place(1e-7, 1e-7, 1e-7);
-    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(state_of({place, place}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true), settings()),
-                         doctest::Contains("particles 1 and 2 coincide"), Error);
+    CHECK_THROWS_WITH_AS(
+        numerics::ImplicitSintering(state_of({place, place}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true), settings()),
+        doctest::Contains("particles 1 and 2 coincide"), Error);
     State poor = state_of({place}, {50e-9}, Vec3::Constant(1e-6), true);
     poor.materials[0].surface_energy.reset();
-    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(std::move(poor), settings()), "material 'alumina' has no surface_energy", Error);
+    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(std::move(poor), settings()), "material 'alumina' has no surface_energy",
+                         Error);
 }

@@ -124,7 +124,8 @@ TEST_CASE("on a chain of contacts the preconditioner is the inverse: conjugate g
     sample.box.lengths = Vec3::Constant(100.0);
     std::mt19937_64 random(3);
     std::normal_distribution<double> any;
-    for (int row = 0; row < 40; ++row) sample.position.push_back(Vec3::Constant(50.0) + Vec3(row, 0.2 * any(random), 0.2 * any(random)));
+    for (int row = 0; row < 40; ++row)
+        sample.position.push_back(Vec3::Constant(50.0) + Vec3(row, 0.2 * any(random), 0.2 * any(random)));
     for (std::int32_t row = 1; row < 40; ++row) sample.pairs.push_back({row - 1, row, {}});
     const ContactNetwork network(sample.box, sample.position, sample.pairs);
     const Stiffness stiffness = stiffness_of(network, sample);

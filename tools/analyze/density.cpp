@@ -27,7 +27,8 @@ constexpr const char* footer =
     "centres}.\n"
     "measure says which volume the density refers to. box: of a periodic state. inner, for a state with a free axis: between the "
     "outermost centres, one mean diameter inwards; a particle counts if its centre is inside, with half of each of its bonds. "
-    "envelope: what a ball rolling over the outside cannot enter, as grains of an envelope pycnometer (its radius: probe_radius, m). "
+    "envelope: what a ball rolling over the outside cannot enter, as grains of an envelope pycnometer (its radius: probe_radius, "
+    "m). "
     "none: the body is too small for that, and relative_density is null.\n"
     "Examples:\n"
     "  analyze density --table sintered.kiln\n"
@@ -110,7 +111,8 @@ Json density_of(const State& state, const Options& options) {
                 {"relative_density", density.value ? Json(*density.value) : Json()},
                 {"measure", density.measure},
                 {"particles", state.particles.size()}};
-    if (density.measure == "envelope") result["probe_radius"] = options.probe > 0.0 ? options.probe : mean_diameter(state.particles);
+    if (density.measure == "envelope")
+        result["probe_radius"] = options.probe > 0.0 ? options.probe : mean_diameter(state.particles);
     add_contacts(result, state, options.bins);
     std::vector<double> diameters;
     for (const double radius : state.particles.radius) diameters.push_back(2.0 * radius);

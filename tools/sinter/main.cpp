@@ -45,6 +45,7 @@ int sinter_states(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 1 && std::string_view(argv[1]) == "green") return kiln::cli::run("sinter green", argc - 1, argv + 1, kiln::sinter::green);
+    if (argc > 1 && std::string_view(argv[1]) == "green")
+        return kiln::cli::run("sinter green", argc - 1, argv + 1, kiln::sinter::green);
     return kiln::cli::run("sinter", argc, argv, sinter_states);
 }

@@ -48,13 +48,16 @@ void Options::add_to(CLI::App& app) {
 void Options::add_programme(CLI::App& app) {
     add_quantities(app, "--to-density", densities, Dimension::none, "Relative densities to write a state at, such as 0.67,0.71");
     add_quantities(app, "--at-time", times, Dimension::time, "Times to write a state at");
-    add_quantity(app, "--every", every, Dimension::time, "Also write a state after each such span of time, until the last wanted one");
+    add_quantity(app, "--every", every, Dimension::time,
+                 "Also write a state after each such span of time, until the last wanted one");
     auto* hold = add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of the hold");
-    app.add_option("--schedule", schedule,
-                   "Temperatures, heating rates and hold times, such as \"25C 10K/min 1200C 1h 10K/min 25C\", from the state's time on")
+    app.add_option(
+           "--schedule", schedule,
+           "Temperatures, heating rates and hold times, such as \"25C 10K/min 1200C 1h 10K/min 25C\", from the state's time on")
         ->type_name("WORDS")
         ->excludes(hold);
-    app.add_option("--report", report, "viscosity: with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
+    app.add_option("--report", report,
+                   "viscosity: with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
         ->check(CLI::IsMember({"viscosity"}))
         ->type_name("WHAT");
 }
@@ -64,7 +67,8 @@ void Options::add_boundaries(CLI::App& app) {
         ->check(CLI::IsMember({"periodic", "free"}))
         ->default_str("as the state says")
         ->type_name("KIND");
-    app.add_option("--fix", fixed, "Axes along which the box keeps its length, such as xy for a film on a substrate")->type_name("AXES");
+    app.add_option("--fix", fixed, "Axes along which the box keeps its length, such as xy for a film on a substrate")
+        ->type_name("AXES");
     add_quantities(app, "--pressure", pressure, Dimension::pressure,
                    "Pressure on the periodic faces, one for all or three for x,y,z; compression counts positive");
 }
@@ -77,7 +81,9 @@ void Options::add_method(CLI::App& app) {
         ->type_name("METHOD");
     add_quantity(app, "--mass-scaling", mass_scaling, Dimension::none, "Mass of the explicit method over the true one", "1e20");
     add_quantity(app, "--tolerance", tolerance, Dimension::none, "Relative error of the density over the run to aim at", "3e-4");
-    app.add_option("--order", order, "Order in time of the implicit step; 1 is for comparison")->check(CLI::Range(1, 2))->capture_default_str();
+    app.add_option("--order", order, "Order in time of the implicit step; 1 is for comparison")
+        ->check(CLI::Range(1, 2))
+        ->capture_default_str();
     add_quantity(app, "--alpha", constants.alpha, Dimension::none, "Contact constant of the sintering force", "4.5");
     add_quantity(app, "--beta", constants.beta, Dimension::none, "Contact constant of the viscosities", "4");
     add_quantity(app, "--eta", constants.eta, Dimension::none, "Contact constant of tangential friction", "0.01");
@@ -100,7 +106,8 @@ void Options::check(const std::string& output) const {
     if (!(pressure.empty() || pressure.size() == 1 || pressure.size() == 3))
         throw CLI::ValidationError("--pressure: one value or three are wanted, for x,y,z");
     if (boundary == "free" && (!fixed.empty() || !pressure.empty()))
-        throw CLI::ValidationError("--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
+        throw CLI::ValidationError(
+            "--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
     if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint wants an output file: -o FILE");
     if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume wants --checkpoint FILE");
     if (!schedule.empty()) parse_schedule(schedule);
@@ -110,7 +117,9 @@ numerics::SinteringSettings Options::settings(double start) const {
     numerics::SinteringSettings settings;
     settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : parse_schedule(schedule).from(start);
     settings.constants = constants;
-    settings.faces = boundary == "free" ? numerics::Faces::free : boundary == "periodic" ? numerics::Faces::periodic : numerics::Faces::as_given;
+    settings.faces = boundary == "free"       ? numerics::Faces::free
+                     : boundary == "periodic" ? numerics::Faces::periodic
+                                              : numerics::Faces::as_given;
     for (const char axis : fixed) settings.fixed[static_cast<std::size_t>(axis - 'x')] = true;
     for (std::size_t axis = 0; axis < 3 && !pressure.empty(); ++axis)
         settings.pressure[static_cast<Eigen::Index>(axis)] = pressure[pressure.size() == 1 ? 0 : axis];

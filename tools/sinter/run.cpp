@@ -48,7 +48,8 @@ void add_viscosities(Json& summary, const State& state, const Options& options) 
     summary["sintering_stress"] = response.mean_sintering_stress();
     summary["bulk_viscosity"] = response.bulk_viscosity();
     summary["shear_viscosity"] = response.shear_viscosity();
-    summary["viscosity"] = {triple(response.viscosity.row(0)), triple(response.viscosity.row(1)), triple(response.viscosity.row(2))};
+    summary["viscosity"] = {triple(response.viscosity.row(0)), triple(response.viscosity.row(1)),
+                            triple(response.viscosity.row(2))};
 }
 
 std::unique_ptr<numerics::SinteringMethod> method_of(State state, const Options& options) {
@@ -84,11 +85,12 @@ class Sintered {
         }
         if (full()) {
             progressed_.converged = false;
-            sinks_.warn("the body is fully dense at " + Json(method_->time()).dump() + " s, which ends the run: this model has no pores that close");
+            sinks_.warn("the body is fully dense at " + Json(method_->time()).dump() +
+                        " s, which ends the run: this model has no pores that close");
         } else if (wanted_.densities_left()) {
             progressed_.converged = false;
-            sinks_.warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() + ", short of the wanted " +
-                        Json(wanted_.next_density()).dump());
+            sinks_.warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() +
+                        ", short of the wanted " + Json(wanted_.next_density()).dump());
         }
         return true;
     }

@@ -7,8 +7,8 @@
 
 namespace kiln::sinter {
 
-/// "25C 10K/min 1200C 1h 10K/min 25C": a temperature, then any number of ramps (a rate and the temperature that it leads to) and holds
-/// (a time). Starts at time 0. Throws CLI::ValidationError that names the word that does not fit.
+/// "25C 10K/min 1200C 1h 10K/min 25C": a temperature, then any number of ramps (a rate and the temperature that it leads to) and
+/// holds (a time). Starts at time 0. Throws CLI::ValidationError that names the word that does not fit.
 physics::Schedule parse_schedule(const std::string& text);
 
 }  // namespace kiln::sinter

@@ -25,9 +25,11 @@ Wanted::Wanted(const Options& options, double density, double time)
     std::sort(densities_.begin(), densities_.end());
     std::sort(times_.begin(), times_.end());
     if (!densities_.empty() && densities_.front() <= density)
-        throw Error("the density " + Json(densities_.front()).dump() + " is wanted, the state has " + Json(density).dump() + " already");
+        throw Error("the density " + Json(densities_.front()).dump() + " is wanted, the state has " + Json(density).dump() +
+                    " already");
     if (!times_.empty() && times_.front() < time)
-        throw Error("the time " + Json(times_.front()).dump() + " s is wanted, the state is at " + Json(time).dump() + " s already");
+        throw Error("the time " + Json(times_.front()).dump() + " s is wanted, the state is at " + Json(time).dump() +
+                    " s already");
     if (densities_.empty() && times_.empty()) times_.push_back(end_);
     last_density_ = densities_.empty() ? density : densities_.back();
     last_time_ = times_.empty() ? end_ : times_.back();
@@ -41,7 +43,8 @@ double Wanted::next_density() const { return densities_.empty() ? endless : dens
 
 double Wanted::next_time(double now) const {
     const double listed = times_.empty() ? end_ : times_.front();
-    return every_ > 0.0 ? std::min(listed, start_ + every_ * (std::floor((now - start_) / every_ * (1.0 + same_time)) + 1.0)) : listed;
+    return every_ > 0.0 ? std::min(listed, start_ + every_ * (std::floor((now - start_) / every_ * (1.0 + same_time)) + 1.0))
+                        : listed;
 }
 
 bool Wanted::reached(double density, double time, double time_goal) {
