@@ -158,3 +158,9 @@ PROGRAM
     run -0 "$BEND" --help
     assert_output --partial "analyze modulus"
 }
+
+@test "a punch so fast that the bar leaves a support is one sentence" {
+    run -1 --separate-stderr "$BEND" --method dynamic --punch-velocity 100m/s --cycles 1 "$BAR"
+    assert_output ''
+    assert_regex "$stderr" "punch-velocity.* is too fast"
+}

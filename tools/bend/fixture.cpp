@@ -155,6 +155,8 @@ double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, st
         moment[cylinder] += force[c][2] * specimen.body.network.position[static_cast<std::size_t>(contact.node)][0];
         sum[cylinder] += force[c][2];
     }
+    if (!(sum[0] > 0.0 && sum[1] > 0.0))
+        throw Error("at the greatest force the bar lies on one support only; a moving punch (--punch-velocity) is too fast for it");
     return moment[1] / sum[1] - moment[0] / sum[0];
 }
 
