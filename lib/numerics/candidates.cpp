@@ -69,8 +69,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
             kind[row] = 3;
         else if (start >= 0.0)
             kind[row] = 2;
-        else if (start + reach > 0.0 ||
-                 start + guess_margin * (expected(pair) - start) + reach > 0.0)
+        else if (start + reach > 0.0 || start + guess_margin * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;
     }
     for (auto* part : {&pairs_, &chosen_, &left_out_, &touching_, &sticking_}) part->clear();

@@ -18,8 +18,8 @@ bool is_shifted(const Image& image) { return image[0] != 0 || image[1] != 0 || i
 ContactNetwork::ContactNetwork(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs)
     : position_(position.begin(), position.end()) {
     const std::size_t count = (position.size() + chunk_particles - 1) / chunk_particles;
-    std::vector<std::array<std::size_t, 4>> next(count,
-                                                 {0, 0, 0, 0});  // of each chunk and kind: entries, then the next one's place
+    // Of each chunk and kind: the number of entries, then the place of the next one.
+    std::vector<std::array<std::size_t, 4>> next(count, {0, 0, 0, 0});
     const auto for_entries = [&](const auto& visit) {
         for (std::size_t row = 0; row < pairs.size(); ++row) {
             const std::size_t a = static_cast<std::size_t>(pairs[row].i) / chunk_particles;

@@ -16,7 +16,7 @@ constexpr double largest_log_step = 0.05;   // of the density
 constexpr double guess_margin = 1.2;        // of the motion that is guessed, that pairs are listed for
 constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
-constexpr double least_room = 0.7;          // factor to the length that meets the tolerance, of an accepted step
+constexpr double accepted_room = 0.7;       // factor to the length that meets the tolerance, of an accepted step
 constexpr double smallest_factor = 0.2;     // of a rejected step's length
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
 constexpr std::size_t small_packing = 1000; // particles; solving closely costs nothing there
@@ -92,7 +92,7 @@ Motion ImplicitSintering::scaled(const Motion& motion, double factor) const {
 
 void ImplicitSintering::Problem::take(const Packing& packing, Candidates& candidates) {
     candidates.turn_to_nodes(clusters);
-    step.emplace(packing.box(), clusters.places(), candidates.pairs(), settings);
+    step.emplace(packing.box(), clusters.places(), candidates.pairs(), candidates.steps(), settings);
 }
 
 void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
@@ -100,8 +100,8 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
     for (;;) {  // until no pair that comes to touch was left out
         Motion nodes = problem.clusters.nodes(motion);
         project(nodes, problem.settings.allowed_strain);
-        trial.report = second ? problem.step->second_order(candidates_.steps(), problem.clusters.nodes(trial.first_order), nodes)
-                              : problem.step->first_order(candidates_.steps(), nodes);
+        trial.report = second ? problem.step->second_order(problem.clusters.nodes(trial.first_order), nodes)
+                              : problem.step->first_order(nodes);
         trial.converged = trial.converged && trial.report.converged;
         newton_ += trial.report.newton;
         conjugate_gradients_ += trial.report.conjugate_gradients;
@@ -202,7 +202,7 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
         if (!(until > packing_.time()))
             throw Error("no step is short enough to converge at " + std::to_string(packing_.time()) + " s");
         trial = attempt(until, guess);
-        if (!trial.leapt && room_for(trial) >= least_room && std::abs(trial.log_density) <= largest_log_step &&
+        if (!trial.leapt && room_for(trial) >= accepted_room && std::abs(trial.log_density) <= largest_log_step &&
             trial.converged)
             break;
         if (rejected == most_rejections) {

@@ -40,8 +40,8 @@ Preconditioner::Preconditioner(const ContactNetwork& network)
     column_.resize(row_begin_.back());
     lower_.resize(block_floats * row_begin_.back() + 1);
     std::vector<std::size_t> next(row_begin_.begin(), row_begin_.end() - 1);
-    for (const ContactNetwork::Chunk& chunk :
-         network.chunks())  // entries are sorted by their first particle, so rows come out sorted
+    // Entries are sorted by their first particle, so the blocks of a row come out sorted by column.
+    for (const ContactNetwork::Chunk& chunk : network.chunks())
         for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry) {
             place_[entry] = next[static_cast<std::size_t>(network.second[entry])]++;
             column_[place_[entry]] = network.first[entry];

@@ -28,10 +28,10 @@ inline Quad operator*(float a, Quad b) { return {a * b.lanes}; }
 inline Quad& operator+=(Quad& a, Quad b) { return a = a + b; }
 inline Quad& operator-=(Quad& a, Quad b) { return a = a - b; }
 
-inline Quad quad(double x, double y, double z, double spare = 0.0) {
-    return {Quad::Lanes{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(spare)}};
+inline Quad quad(double x, double y, double z) {
+    return {Quad::Lanes{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.0F}};
 }
-inline Quad quad(const Vec3& v, double spare = 0.0) { return quad(v[0], v[1], v[2], spare); }
+inline Quad quad(const Vec3& v) { return quad(v[0], v[1], v[2]); }
 
 /// Four neighbours in memory, at any address.
 inline Quad load(const float* from) {

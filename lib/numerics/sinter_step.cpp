@@ -47,9 +47,11 @@ double resistance(double cubic, double start, double reached) {
 
 }  // namespace
 
-SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings)
+SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, std::span<const PairStep> step,
+                       const StepSettings& settings)
     : box_(box),
       pairs_(pairs),
+      step_(step),
       settings_(settings),
       network_(box, position, pairs),
       stiffness_(network_),
@@ -57,11 +59,13 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       preconditioner_(network_),
       rows_(pairs.size()),
       entries_(network_.pair.size()),
-      levers_(pairs.size()),
       total_(3 * position.size()),
       drive_(position.size()),
       unbalanced_(position.size()),
-      direction_(position.size()) {}
+      direction_(position.size()) {
+    levers_.reserve(step.size());
+    for (const PairStep& pair : step) levers_.push_back(pair.lever);
+}
 
 Vec3 SinterStep::relative(std::size_t row, const Motion& motion, const Vec3& lever) const {
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].i)]);
@@ -69,41 +73,42 @@ Vec3 SinterStep::relative(std::size_t row, const Motion& motion, const Vec3& lev
     return b - a + motion.strain.cwiseProduct(lever);
 }
 
-void SinterStep::start_geometry(const std::vector<PairStep>& step) {
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < step.size(); ++row) {
-        const PairStep& pair = step[row];
-        const double share = pair.overlap >= 0.0 ? 1.0 : 0.0, goal = alone(pair, share);
-        // Mean overlap of the step as the pair alone would have it: at its start a new contact has no neck to resist shear.
-        const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + goal);
-        rows_[row] = {pair.vector / pair.distance,      pair.overlap, pair.cubic, goal, share * pair.force,
-                      pair.shear * share * mean_overlap};
-    }
-    pressure_volume_ = settings_.pressure * box_.volume();
-    take_geometry(step);
+SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double share, double goal,
+                                             double end_overlap) const {
+    const PairStep& pair = step_[row];
+    const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
+    return {normal, pair.overlap, pair.cubic, goal, share * pair.force, pair.shear * share * mean_overlap};
 }
 
-void SinterStep::midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion) {
+void SinterStep::start_geometry() {
 #pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < step.size(); ++row) {
-        const PairStep& pair = step[row];
+    for (std::size_t row = 0; row < step_.size(); ++row) {
+        const PairStep& pair = step_[row];
+        const double share = pair.overlap >= 0.0 ? 1.0 : 0.0, goal = alone(pair, share);
+        // Shear by the overlap that the pair alone would come to: at the start of the step a new contact has no neck to resist.
+        rows_[row] = pair_force(row, pair.vector / pair.distance, share, goal, goal);
+    }
+    pressure_volume_ = settings_.pressure * box_.volume();
+    take_geometry();
+}
+
+void SinterStep::midpoint_geometry(const Motion& motion) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t row = 0; row < step_.size(); ++row) {
+        const PairStep& pair = step_[row];
         const Vec3 end = pair.vector + relative(row, motion, pair.lever);
         const double end_overlap = pair.overlap + pair.distance - end.norm();
         const double share = touching_share(pair.overlap, end_overlap);
-        const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
-        rows_[row] = {(pair.vector + end).normalized(), pair.overlap, pair.cubic, alone(pair, share), share * pair.force,
-                      pair.shear * share * mean_overlap};
+        rows_[row] = pair_force(row, (pair.vector + end).normalized(), share, alone(pair, share), end_overlap);
     }
     const Vec3 stretch = Vec3::Ones() + 0.5 * motion.strain;  // the pressure acts on the faces of the box as they are half way
     pressure_volume_ = settings_.pressure * box_.volume() * stretch.prod();
     pressure_volume_ = pressure_volume_.cwiseQuotient(stretch);
-    take_geometry(step);
+    take_geometry();
 }
 
 /// Brings what does not change between Newton's iterations into the order of the network.
-void SinterStep::take_geometry(const std::vector<PairStep>& step) {
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < step.size(); ++row) levers_[row] = step[row].lever;
+void SinterStep::take_geometry() {
     network_.for_chunks([&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network_.chunks()[index];
         for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
@@ -114,15 +119,15 @@ void SinterStep::take_geometry(const std::vector<PairStep>& step) {
     const Motion rest(network_.particles());
     network_.gather(rest, drive_, total_,
                     [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].drive * entries_[entry].normal; });
-    start_limits(step);
+    start_limits();
 }
 
-void SinterStep::start_limits(const std::vector<PairStep>& step) {
+void SinterStep::start_limits() {
     double stiffness = 0.0;
     for (const PairForce& pair : rows_) stiffness += pair.drive > 0.0 ? pair.cubic * square(pair.goal) : 0.0;
-    limits_.reset(step.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step.size(), 1)));
-    for (std::size_t row = 0; row < step.size(); ++row) {
-        const PairStep& pair = step[row];
+    limits_.reset(step_.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1)));
+    for (std::size_t row = 0; row < step_.size(); ++row) {
+        const PairStep& pair = step_[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
         limits_.add(row, pair.limit, std::max(0.0, rows_[row].drive - resistance(pair.cubic, start, reached)));  // as if alone
@@ -198,12 +203,12 @@ bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
     return false;
 }
 
-bool SinterStep::minimise(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report) {
+bool SinterStep::minimise(double tolerance, Motion& motion, StepReport& report) {
     bool converged = newton(tolerance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion, levers_[row])); },
-            [&](std::size_t row) { return limit_accuracy * step[row].reduced_radius; });
+            [&](std::size_t row) { return limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == most_limit_passes) return false;
         converged = newton(tolerance, motion, report);
@@ -211,11 +216,11 @@ bool SinterStep::minimise(const std::vector<PairStep>& step, double tolerance, M
     return converged;
 }
 
-void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion) const {
+void SinterStep::remove_drift(Motion& motion) const {
     const std::size_t count = network_.particles();
     Clusters clusters(count);
     for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        if (rows_[row].drive > 0.0 || step[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
+        if (rows_[row].drive > 0.0 || step_[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
     }
     std::vector<Vec3> drift(count, Vec3::Zero());
     std::vector<double> members(count, 0.0);
@@ -230,21 +235,21 @@ void SinterStep::remove_drift(const std::vector<PairStep>& step, Motion& motion)
     }
 }
 
-StepReport SinterStep::first_order(const std::vector<PairStep>& step, Motion& motion) {
+StepReport SinterStep::first_order(Motion& motion) {
     StepReport report;
-    start_geometry(step);
-    report.converged = minimise(step, settings_.first_tolerance, motion, report);
-    remove_drift(step, motion);
+    start_geometry();
+    report.converged = minimise(settings_.first_tolerance, motion, report);
+    remove_drift(motion);
     report.stress = strain_force_ / box_.volume();
     return report;
 }
 
-StepReport SinterStep::second_order(const std::vector<PairStep>& step, const Motion& first, Motion& motion) {
+StepReport SinterStep::second_order(const Motion& first, Motion& motion) {
     StepReport report;
     const Vec3 stretch = Vec3::Ones() + 0.5 * first.strain;
-    midpoint_geometry(step, first);
-    report.converged = minimise(step, settings_.second_tolerance, motion, report);
-    remove_drift(step, motion);
+    midpoint_geometry(first);
+    report.converged = minimise(settings_.second_tolerance, motion, report);
+    remove_drift(motion);
     report.stress = strain_force_.cwiseProduct(stretch) / (box_.volume() * stretch.prod());
     return report;
 }

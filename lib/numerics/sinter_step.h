@@ -43,16 +43,17 @@ struct StepReport {
     Vec3 stress = Vec3::Zero();  // mean over the step along the axes, tension positive, force/m2
 };
 
-/// Solves steps on one list of pairs. Positions and box must stay those of the constructor.
+/// Solves one step. Keeps references to the pairs and to what each of them brings into it (a row a pair).
 class SinterStep {
    public:
-    SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, const StepSettings& settings);
+    SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, std::span<const PairStep> step,
+               const StepSettings& settings);
 
     /// Motion over the step with the geometry at its start, from a guess of it: first order in the length of the step.
-    StepReport first_order(const std::vector<PairStep>& step, Motion& motion);
+    StepReport first_order(Motion& motion);
 
     /// Motion with the geometry half way through `first`, the motion of first order, from a guess of it: second order.
-    StepReport second_order(const std::vector<PairStep>& step, const Motion& first, Motion& motion);
+    StepReport second_order(const Motion& first, Motion& motion);
 
    private:
     /// What the force of one pair depends on besides the motion, for one geometry.
@@ -62,18 +63,21 @@ class SinterStep {
     };
     /// Relative motion of pair `row` under a motion, m.
     Vec3 relative(std::size_t row, const Motion& motion, const Vec3& lever) const;
-    void start_geometry(const std::vector<PairStep>& step);
-    void midpoint_geometry(const std::vector<PairStep>& step, const Motion& motion);
-    void take_geometry(const std::vector<PairStep>& step);
-    void start_limits(const std::vector<PairStep>& step);
-    bool minimise(const std::vector<PairStep>& step, double tolerance, Motion& motion, StepReport& report);
+    /// Of a pair with this normal that touches for a share of the step; goal, end_overlap: overlap at the end, alone and expected.
+    PairForce pair_force(std::size_t row, const Vec3& normal, double share, double goal, double end_overlap) const;
+    void start_geometry();
+    void midpoint_geometry(const Motion& motion);
+    void take_geometry();
+    void start_limits();
+    bool minimise(double tolerance, Motion& motion, StepReport& report);
     bool newton(double tolerance, Motion& motion, StepReport& report);
     double line_search(double slope, Motion& motion);
     void forces(const Motion& motion, Motion& unbalanced, bool secant);
-    void remove_drift(const std::vector<PairStep>& step, Motion& motion) const;
+    void remove_drift(Motion& motion) const;
 
     Box box_;
     std::span<const Pair> pairs_;
+    std::span<const PairStep> step_;
     StepSettings settings_;
     ContactNetwork network_;
     Stiffness stiffness_;

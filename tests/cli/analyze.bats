@@ -3,11 +3,7 @@
 bats_require_minimum_version 1.5.0
 load helper.bash
 
-DATA="$BATS_TEST_DIRNAME/../data"
-
 setup() { cd "$BATS_TEST_TMPDIR"; }
-
-value() { jq -r "$1" <<<"$output"; }
 
 # A dem-modulus document: relative density, modulus, standard error.
 modulus_line() {

@@ -3,11 +3,7 @@
 bats_require_minimum_version 1.5.0
 load helper.bash
 
-DATA="$BATS_TEST_DIRNAME/../data"
-
 setup() { cd "$BATS_TEST_TMPDIR"; }
-
-value() { jq -r "$1" <<<"$output"; }
 
 @test "bondify: two spheres end with radius d/2 and the bond of what they lost" {
     run -0 --separate-stderr "$BONDIFY" --text "$DATA/two_spheres.jsonl"

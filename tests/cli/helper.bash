@@ -1,5 +1,5 @@
-# helper.bash: what every Bats file loads: assertions, the programs (from the environment, else from build/bin), a comparison of
-# numbers.
+# helper.bash: what every Bats file loads: assertions, the programs (from the environment, else from build/bin), the data of the
+# tests, values of a JSON output and a comparison of numbers.
 load /usr/lib/bats/bats-support/load
 load /usr/lib/bats/bats-assert/load
 
@@ -8,6 +8,10 @@ ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
 : "${BEND:=$ROOT/build/bin/bend}" "${ANALYZE:=$ROOT/build/bin/analyze}" "${PYTHON:=/usr/bin/python3}"
 export SINTER BONDIFY BEND ANALYZE PYTHON
 export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}" # states of a few hundred particles are done soonest so, and tests may share the machine
+
+DATA="$ROOT/tests/data"
+
+value() { jq -r "$1" <<<"$output"; } # of what the last run wrote, by a filter of jq
 
 # near A B TOLERANCE: fails, and says so, unless |A - B| <= TOLERANCE |B|.
 near() {

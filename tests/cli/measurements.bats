@@ -5,8 +5,6 @@ load helper.bash
 
 setup() { cd "$BATS_TEST_TMPDIR"; }
 
-value() { jq -r "$1" <<<"$output"; }
-
 # A bar of 4 mm x 3 mm on a span of 30 mm: S = 1e6 N/m, L^3/(4 b h^3) = 62500, bracket 1 + 2.4 * 1.25 * 0.01 = 1.03 for nu = 0.25.
 SIZE=(--span 30mm --width 4mm --height 3mm --poisson-ratio 0.25)
 

@@ -3,11 +3,7 @@
 bats_require_minimum_version 1.5.0
 load helper.bash
 
-DATA="$BATS_TEST_DIRNAME/../data"
-
 setup() { cd "$BATS_TEST_TMPDIR"; }
-
-value() { jq -r "$1" <<<"$output"; }
 
 @test "analyze density: sizes, clusters, isolated particles and the texture of contacts" {
     jq -nc '{box: {vectors: [[99,0,0],[0,99,0],[0,0,99]]},

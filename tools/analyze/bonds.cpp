@@ -1,10 +1,10 @@
 // bonds.cpp: number and mean size of the bonds of states, and the distribution of their radii.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "io/state_io.h"
+#include "physics/bond_stress.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/histogram.h"
 #include "tools/analyze/report.h"
@@ -45,14 +45,12 @@ void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
     const std::vector<double>* moment = column(bonds, "moment", 3);
     std::vector<double> stress, fibre;
     for (std::size_t bond = 0; bond < bonds.size(); ++bond) {
-        const double radius = bonds.radius[bond], area = std::numbers::pi * radius * radius;
-        if (area == 0.0) continue;
-        stress.push_back((*force)[bond] / area);
+        const double tension = (*force)[bond], radius = bonds.radius[bond];
+        if (radius == 0.0) continue;
+        stress.push_back(physics::bond_stress(tension, 0.0, 0.0, 0.0, radius).tensile);
         if (!moment) continue;
-        // Outer fibre of a round beam, M R/I with I = A R^2/4 (D. Potyondy & P. Cundall, Int. J. Rock Mech. 41 (2004) 1329, eq.
-        // 17).
         const double* turn = moment->data() + 3 * bond;
-        fibre.push_back(stress.back() + 4.0 * std::hypot(turn[0], turn[1], turn[2]) / (area * radius));
+        fibre.push_back(physics::bond_stress(tension, 0.0, std::hypot(turn[0], turn[1], turn[2]), 0.0, radius).tensile);
     }
     result["normal_force"] = spread_of(*force);
     result["compressed_fraction"] = static_cast<double>(std::ranges::count_if(*force, [](double f) { return f < 0.0; })) /
