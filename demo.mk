@@ -2,4 +2,5 @@
 DEMO_PARTICLES ?= 3000
 
 demo: $(PROGRAMS)               ## run the paper's study at 3,000 particles; all in build/demo/report.html
-	@$(MAKE) --no-print-directory -C workflows/paper N=$(DEMO_PARTICLES) OUT=$(abspath $(BUILD))/demo BIN=$(abspath $(BUILD))/bin PYTHON=$(PYTHON)
+	@$(MAKE) --no-print-directory -C workflows/paper N=$(DEMO_PARTICLES) OUT=$(abspath $(BUILD))/demo \
+	    BIN=$(abspath $(BUILD))/bin PYTHON=$(PYTHON)

@@ -31,8 +31,8 @@ double best_seconds(const Work& work) {
 }
 
 void say(const char* part, double bytes, double seconds) {
-    std::cout << Json{{"bench", "matvec"}, {"case", part}, {"bytes", bytes}, {"seconds", seconds}, {"gigabytes_per_second", 1e-9 * bytes / seconds},
-                      {"threads", omp_get_max_threads()}}
+    std::cout << Json{{"bench", "matvec"}, {"case", part}, {"bytes", bytes}, {"seconds", seconds},
+                      {"gigabytes_per_second", 1e-9 * bytes / seconds}, {"threads", omp_get_max_threads()}}
                      .dump()
               << std::endl;
 }
@@ -60,7 +60,8 @@ std::vector<Vec3> packing(std::size_t edge, Box& box) {
                                           static_cast<double>(z) + shake(random));
     box.lengths = Vec3::Constant(static_cast<double>(edge));
     std::vector<Vec3> sorted;
-    for (const std::int32_t row : spatial_order(box, position, 1.5)) sorted.push_back(box.wrap(position[static_cast<std::size_t>(row)]));
+    for (const std::int32_t row : spatial_order(box, position, 1.5))
+        sorted.push_back(box.wrap(position[static_cast<std::size_t>(row)]));
     return sorted;
 }
 
@@ -87,7 +88,8 @@ int main(int argc, char** argv) {
     const auto particles = static_cast<double>(position.size()), entries = static_cast<double>(network.first.size());
 
     triad(static_cast<std::size_t>(particles) * 32);
-    // An entry is 28 bytes; a particle's displacement, position, force and total come once each, and the total is written before: 5 x 16.
+    // An entry is 28 bytes; a particle's displacement, position, force and total come once each, and the total is written
+    // before: 5 x 16.
     say("matvec", 28.0 * entries + 80.0 * particles, best_seconds([&] {
             network.for_chunks([&](std::size_t chunk) { stiffness.displace(chunk, in, total); });
             network.for_chunks([&](std::size_t chunk) { stiffness.multiply(chunk, in.strain, total, out); });

@@ -1,4 +1,6 @@
-"""sintering.py: sintering's error against its time, and its cost against the number of particles, as JSON lines; -o FIGURE draws both.
+"""sintering.py: sintering's error against its time, and its cost against the number of particles, as JSON lines.
+
+-o FIGURE draws both.
 
 error   density at fixed times against a run of tolerance 1e-7, for the implicit method of both orders and the explicit one with
         less and less inertia; 6,000 particles from a loose packing, from one compacted affinely, and of a free cube; one thread
@@ -48,7 +50,8 @@ def run(command, environment=None):
 def sinter(folder, green, options, environment=None):
     """Densities at the wanted states, what run() gives, and the history of a run."""
     states, history = os.path.join(folder, "states.kiln"), os.path.join(folder, "history.jsonl")
-    usage = run(["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green], environment)
+    command = ["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green]
+    usage = run(command, environment)
     with open(states, "rb") as stream:
         densities = [relative_density(state) for state in read(stream)]
     with open(history, encoding="utf-8") as stream:
@@ -61,7 +64,8 @@ def factors(rows):
     for row in rows:
         if row["method"] != "explicit":
             continue
-        rivals = [r for r in rows if r["start"] == row["start"] and r["method"] == "implicit, second order" and r["error"] <= row["error"]]
+        rivals = [rival for rival in rows if rival["start"] == row["start"] and rival["error"] <= row["error"]
+                  and rival["method"] == "implicit, second order"]
         if rivals:
             best = min(rivals, key=lambda rival: rival["seconds"])
             say("factor", start=row["start"], mass_scaling=row["setting"], error=row["error"], tolerance=best["setting"],
@@ -85,7 +89,8 @@ def errors(folder, starts, particles, tightest, lightest):
             densities, (_, seconds, _), steps = sinter(folder, green, f"{options} {more}", alone)
             error = max(abs(a / b - 1.0) for a, b in zip(densities, exact))
             count = len(steps) if method != "explicit" else sum(step["attempts"] for step in steps)
-            rows.append({"particles": particles, "start": name, "method": method, "setting": setting, "seconds": seconds, "error": error, "steps": count})
+            rows.append({"particles": particles, "start": name, "method": method, "setting": setting, "seconds": seconds,
+                         "error": error, "steps": count})
             say("error", **rows[-1])
     factors(rows)
     return rows
@@ -121,7 +126,8 @@ def draw(error_rows, size_rows, path):
     axis = axes[-1]
     counts = [row["particles"] for row in size_rows]
     axis.loglog(counts, [row["seconds"] for row in size_rows], "o-", color=LINE, label="wall time, s", markersize=4)
-    axis.loglog(counts, [row["iterations_per_solve"] for row in size_rows], "s-", color=ACCENT, label="iterations a solve", markersize=4)
+    iterations = [row["iterations_per_solve"] for row in size_rows]
+    axis.loglog(counts, iterations, "s-", color=ACCENT, label="iterations a solve", markersize=4)
     axis.loglog(counts, [1e-4 * count for count in counts], ":", color=REFERENCE, label="proportional to N")
     axis.set(title="0.58 to 0.70", xlabel="particles")
     axis.legend()
@@ -147,7 +153,9 @@ def main():
         return
     with tempfile.TemporaryDirectory() as folder:
         size_rows = sizes(folder, given.largest) if given.only != "error" else []
-        error_rows = errors(folder, given.start or STARTS, given.particles, given.tightest, given.lightest) if given.only != "size" else []
+        error_rows = []
+        if given.only != "size":
+            error_rows = errors(folder, given.start or STARTS, given.particles, given.tightest, given.lightest)
     if given.output:
         draw(error_rows, size_rows, given.output)
 

@@ -9,7 +9,8 @@ ContactStatistics contact_statistics(const Box& box, const Particles& particles,
     std::size_t contacts = 0;
     double sum = 0.0;
     for (const Pair& pair : pairs) {
-        const double radii = particles.radius[static_cast<std::size_t>(pair.i)] + particles.radius[static_cast<std::size_t>(pair.j)];
+        const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+        const double radii = particles.radius[i] + particles.radius[j];
         const double overlap = radii - pair_vector(box, particles.position, pair).norm();
         if (overlap < 0.0) continue;
         ++contacts;
@@ -34,7 +35,8 @@ std::int32_t PeriodicClusters::root(std::int32_t row, Offset& image) {
     image = {0, 0, 0};
     for (auto at = static_cast<std::size_t>(row); parent_[at] != row; at = static_cast<std::size_t>(row)) {
         const auto above = static_cast<std::size_t>(parent_[at]);
-        for (std::size_t axis = 0; axis < 3; ++axis) offset_[at][axis] += offset_[above][axis];  // path halving: seen from the grandparent
+        // Path halving: the row is seen from its grandparent.
+        for (std::size_t axis = 0; axis < 3; ++axis) offset_[at][axis] += offset_[above][axis];
         parent_[at] = parent_[above];
         for (std::size_t axis = 0; axis < 3; ++axis) image[axis] += offset_[at][axis];
         row = parent_[at];

@@ -38,12 +38,15 @@ class PeriodicClusters {
    public:
     using Offset = std::array<int, 3>;
 
-    explicit PeriodicClusters(std::size_t rows) : parent_(rows), offset_(rows, Offset{0, 0, 0}) { std::iota(parent_.begin(), parent_.end(), 0); }
+    explicit PeriodicClusters(std::size_t rows) : parent_(rows), offset_(rows, Offset{0, 0, 0}) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
 
     /// The row that stands for the cluster of a row, and the image by which the row is seen from it along the cluster's contacts.
     std::int32_t root(std::int32_t row, Offset& image);
 
-    /// Joins the rows of a pair. Where they are joined already, and the pair leads to another image, the cluster reaches its own image.
+    /// Joins the rows of a pair. Where they are joined already, and the pair leads to another image, the cluster reaches its
+    /// own image.
     void join(const Pair& pair);
 
     /// Axes along which some cluster reaches its own periodic image.

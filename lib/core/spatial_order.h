@@ -8,7 +8,8 @@
 
 namespace kiln {
 
-/// Rows sorted along Morton's curve through cubic cells of the given edge (m); positions are wrapped first. Equal cells keep their order.
+/// Rows sorted along Morton's curve through cubic cells of the given edge (m); positions are wrapped first.
+/// Equal cells keep their order.
 std::vector<std::int32_t> spatial_order(const Box& box, std::span<const Vec3> position, double cell);
 
 }  // namespace kiln

@@ -55,8 +55,8 @@ BondCompliance bond_compliance(BondLaw law, const BondGeometry& geometry);
 
 /// Elastic springs of a bond of Young's modulus E and shear modulus G, Pa:
 ///   k_n = E / int 1/A,  k_torsion = 2 G / int 1/I,  k_bend = E / int 1/I  (Potyondy & Cundall 2004, with A/L as
-///   the inverse integral), and k_t = G / int 1/A, or for Timoshenko's beam 1/k_t = int 1/A / (kappa G) + int x2/I / E with Cowper's
-///   (1966) kappa = 6 (1 + nu)/(7 + 6 nu) of the circle. A bond of radius zero has no stiffness.
+///   the inverse integral), and k_t = G / int 1/A, or for Timoshenko's beam 1/k_t = int 1/A / (kappa G) + int x2/I / E
+///   with Cowper's (1966) kappa = 6 (1 + nu)/(7 + 6 nu) of the circle. A bond of radius zero has no stiffness.
 BondStiffness bond_stiffness(BondLaw law, BondShear shear, double young_modulus, double shear_modulus,
                              const BondGeometry& geometry);
 

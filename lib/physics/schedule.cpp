@@ -29,7 +29,7 @@ Schedule Schedule::from(double start) const {
 }
 
 double Schedule::temperature(double time) const {
-    const auto after = std::upper_bound(corners_.begin(), corners_.end(), time, [](double t, const Corner& corner) { return t < corner.time; });
+    const auto after = std::ranges::upper_bound(corners_, time, {}, &Corner::time);
     if (after == corners_.begin()) return corners_.front().temperature;
     if (after == corners_.end()) return corners_.back().temperature;
     const Corner& before = *(after - 1);

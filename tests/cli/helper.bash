@@ -7,7 +7,8 @@ ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
 : "${SINTER:=$ROOT/build/bin/sinter}" "${BONDIFY:=$ROOT/build/bin/bondify}"
 : "${BEND:=$ROOT/build/bin/bend}" "${ANALYZE:=$ROOT/build/bin/analyze}" "${PYTHON:=/usr/bin/python3}"
 export SINTER BONDIFY BEND ANALYZE PYTHON
-export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}" # states of a few hundred particles are done soonest so, and tests may share the machine
+# States of a few hundred particles are done soonest on one thread, and tests may share the machine.
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}"
 
 DATA="$ROOT/tests/data"
 

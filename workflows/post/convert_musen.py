@@ -2,9 +2,9 @@
 
 Each line is a row of commands, a number and its values, in SI units. The numbers and their values are those of MUSEN's exporter
 (enumeration ETXTCommands, classes CSphere and CBond of its published source, 2020): an object has ID (0), type (1; 1 sphere, 9
-solid bond), geometry (5; a sphere's radius and contact radius, a bond's two IDs, diameter and initial length), material (23), time of
-activity (24), and then for each time (2) its coordinates (12) and other values. The scene has a domain (22) and periodic
-boundaries (28)."""
+solid bond), geometry (5; a sphere's radius and contact radius, a bond's two IDs, diameter and initial length), material (23),
+time of activity (24), and then for each time (2) its coordinates (12) and other values. The scene has a domain (22) and
+periodic boundaries (28)."""
 import numpy
 
 from convert_common import ConvertError, box_of, free_box, nearest_image, neck_length, number, opened, rows_of, state, whole

@@ -138,8 +138,9 @@ def as_text(result):
             f"{result['activation_energy'] / 1e3:.0f} "
             f"kJ/mol allows; read as a",
             f"master sintering curve of this packing they have an apparent activation energy of {apparent / 1e3:.0f} kJ/mol.",
-            "Densities may be compared with experiments, times and temperatures may not. What the model leaves out acts in this way:",
-            "grains grow in the last stage, the powder has agglomerates and a spread of sizes, and surface diffusion coarsens it on heating."
+            "Densities may be compared with experiments, times and temperatures may not. What the model leaves out acts in this",
+            "way: grains grow in the last stage, the powder has agglomerates and a spread of sizes, and surface diffusion",
+            "coarsens it on heating."
         ]
     return "\n".join(lines) + "\n"
 

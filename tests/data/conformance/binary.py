@@ -43,7 +43,8 @@ write("valid/binary", WHOLE)
 write("valid/binary-two-documents", WHOLE + WHOLE)
 write("valid/binary-gaps", header(160, position=96, radius=5) + b"x" * 5 + RADIUS + b"x" * 75 + POSITION + b"x" * 16)
 write("valid/binary-beside-text", json.dumps(
-    {"box": BOX, "particles": {"radius": TEXT_RADIUS, "position": array("f8", [2, 3], 0)}, "bytes": 48}).encode() + b"\n" + POSITION)
+    {"box": BOX, "particles": {"radius": TEXT_RADIUS, "position": array("f8", [2, 3], 0)}, "bytes": 48}).encode()
+    + b"\n" + POSITION)
 write("valid/binary-zero-particles", json.dumps(
     {"box": BOX, "particles": {"position": array("f8", [0, 3], 0), "radius": array("f8", [0], 0)}, "bytes": 0}).encode() + b"\n")
 write("valid/binary-nan-in-unknown-array",
