@@ -102,6 +102,7 @@ BondedBody bonded_body(const State& state, const BondModel& model) {
     const std::vector<std::int32_t> carrying = carrying_bonds(state);
     if (carrying.empty()) throw Error("no bond of the state is thick enough to carry a load");
     std::vector<std::array<std::int32_t, 2>> pairs;
+    pairs.reserve(carrying.size());
     for (const std::int32_t row : carrying) pairs.push_back(state.bonds->pair[at(row)]);
     const Pieces pieces = find_pieces(along_x(state.particles), pairs);
     const std::size_t largest = pieces.largest();

@@ -30,7 +30,7 @@ std::vector<Vec6> inverse_masses(const BondNetwork& network, const std::vector<E
 }  // namespace
 
 ExplicitMotion::ExplicitMotion(const BondNetwork& network, std::vector<ElasticSphere> spheres, const std::vector<double>& mass,
-                               Tooling tooling, const MotionModel& model)
+                               const Tooling& tooling, const MotionModel& model)
     : network_(network),
       incidence_(find_incidence(network.nodes(), network.pair)),
       inverse_mass_(inverse_masses(network, spheres, mass)),

@@ -32,8 +32,8 @@ class ExplicitMotion {
    public:
     /// A network without periodic axes that outlives the motion; mass of every node, kg, of spheres with the moment of inertia
     /// (2/5) m r^2.
-    ExplicitMotion(const BondNetwork& network, std::vector<ElasticSphere> spheres, const std::vector<double>& mass, Tooling tooling,
-                   const MotionModel& model);
+    ExplicitMotion(const BondNetwork& network, std::vector<ElasticSphere> spheres, const std::vector<double>& mass,
+                   const Tooling& tooling, const MotionModel& model);
 
     /// s: 0.8 times 2/omega, where omega^2 is at most twice the largest eigenvalue of the nodes' own 6x6 stiffness over their mass:
     /// every spring has two ends.

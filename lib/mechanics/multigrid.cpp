@@ -63,10 +63,11 @@ BlockMatrix smoothed(const BlockMatrix& matrix, const std::vector<Mat6>& inverse
 }
 
 Eigen::MatrixXd dense(const BlockMatrix& matrix) {
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(6 * matrix.rows(), 6 * matrix.columns);
+    const auto from = [](std::int32_t block) { return 6 * static_cast<Eigen::Index>(block); };
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(from(matrix.rows()), from(matrix.columns));
     for (std::int32_t row = 0; row < matrix.rows(); ++row) {
         for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-            result.block<6, 6>(6 * row, 6 * matrix.column[at(k)]) = matrix.block[at(k)];
+            result.block<6, 6>(from(row), from(matrix.column[at(k)])) = matrix.block[at(k)];
         }
     }
     return result;

@@ -89,7 +89,7 @@ bool Candidates::complete(const Motion& motion) const {
     const auto touching_among = [&](const std::vector<Pair>& pairs) {
         std::size_t count = 0;
 #pragma omp parallel for schedule(static) reduction(+ : count)
-        for (std::size_t row = 0; row < pairs.size(); ++row) count += end_overlap(pairs[row], motion) > harmless;
+        for (const Pair& pair : pairs) count += end_overlap(pair, motion) > harmless;
         return count;
     };
     if (lists_ == packing_.lists()) return touching_among(left_out_) == 0;

@@ -21,7 +21,7 @@ Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace) {
     const double third = pivot(2, 2) - pivot(2, 0) * pivot(2, 0) / first - rest * rest / second;
     if (first > floor && second > floor && third > floor) return pivot.inverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(pivot);
-    const Vec3 values = modes.eigenvalues();
+    const Vec3& values = modes.eigenvalues();
     const Vec3 inverse = (values.array() > floor).select(values.cwiseInverse(), 0.0);
     return modes.eigenvectors() * inverse.asDiagonal() * modes.eigenvectors().transpose();
 }

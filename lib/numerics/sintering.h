@@ -77,7 +77,7 @@ class SinteringMethod {
 /// A vector as JSON, and back.
 inline Json triple(const Vec3& vector) { return {vector[0], vector[1], vector[2]}; }
 inline Vec3 triple_from(const Json& json) {
-    return Vec3(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
 /// The f8 array of three columns and the given number of rows; throws Error where there is none.
