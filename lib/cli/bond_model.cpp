@@ -1,6 +1,7 @@
 // bond_model.cpp: names and help of the bond laws on the command line.
 #include "cli/bond_model.h"
 
+#include <CLI/CLI.hpp>
 #include <map>
 
 namespace kiln::cli {

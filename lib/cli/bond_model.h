@@ -1,9 +1,11 @@
 // bond_model.h: the options --bond-law and --bond-shear, the same in every tool that solves bond networks.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "mechanics/bond_network.h"
+
+namespace CLI {
+class App;
+}
 
 namespace kiln::cli {
 

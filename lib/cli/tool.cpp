@@ -1,6 +1,7 @@
 // tool.cpp: common options, the one catch, signals, the history entry.
 #include "cli/tool.h"
 
+#include <CLI/CLI.hpp>
 #include <malloc.h>
 #include <omp.h>
 

@@ -1,12 +1,15 @@
 // tool.h: what all four programs share: common options, the one catch, exit statuses, interruption.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "core/types.h"
+
+namespace CLI {
+class App;
+}
 
 namespace kiln::cli {
 

@@ -1,6 +1,7 @@
 // units.cpp: the table of units and the parser of quantities.
 #include "cli/units.h"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <numbers>

@@ -1,10 +1,14 @@
 // units.h: quantities with units on the command line, such as 50nm, 1200C, 10K/min; a number without its unit is an error.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}
 
 namespace kiln::cli {
 

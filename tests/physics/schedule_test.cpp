@@ -1,7 +1,7 @@
 // schedule_test.cpp: temperature schedules: integrals against the exponential integral, equivalent time, programme against hold.
 #include <doctest/doctest.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/Error.hpp>
 
 #include <cmath>
 

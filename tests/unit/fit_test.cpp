@@ -1,7 +1,7 @@
 // fit_test.cpp: lines, unloading branches and laws of modulus against porosity recover what they were made of.
 #include <doctest/doctest.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/Error.hpp>
 #include <cmath>
 #include <random>
 

@@ -1,4 +1,5 @@
 // green_test.cpp: green bodies: size distributions, overlaps, densities, and the coordination number of the paper's start.
+#include <CLI/CLI.hpp>
 #include <doctest/doctest.h>
 #include <omp.h>
 

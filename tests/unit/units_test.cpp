@@ -1,4 +1,5 @@
 // units_test.cpp: every unit of the command line by its SI value, and what is no quantity.
+#include <CLI/CLI.hpp>
 #include <doctest/doctest.h>
 
 #include <numbers>

@@ -1,4 +1,5 @@
 // bonds.cpp: number and mean size of the bonds of states, and the distribution of their radii.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,6 +1,7 @@
 // csv.cpp: reads tables of measurements.
 #include "tools/analyze/csv.h"
 
+#include <CLI/Error.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -54,7 +55,7 @@ std::string unit_of(const std::string& heading) {
     while (!unit.empty() && (unit.back() == ')' || unit.back() == ']' || unit.back() == ' ')) unit.pop_back();
     unit = trimmed(unit);
     for (const char* micro : {"\u00b5", "\u03bc"})  // the micro sign and the Greek letter
-        if (unit.starts_with(micro)) unit.replace(0, 2, "u");
+        if (unit.starts_with(micro)) unit = std::string(1, 'u').append(unit, 2);
     return unit;
 }
 

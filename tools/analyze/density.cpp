@@ -1,4 +1,5 @@
 // density.cpp: density, coordination number, overlaps, sizes, clusters, texture and order of states.
+#include <CLI/CLI.hpp>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>

@@ -1,4 +1,5 @@
 // elastic.cpp: elastic tensor of periodic states of bonded particles.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "cli/bond_model.h"

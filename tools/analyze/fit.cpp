@@ -1,4 +1,5 @@
 // fit.cpp: a law of Young's modulus against porosity through the results of several tests.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,6 @@
 // info.cpp: what each document of a stream holds.
+#include <CLI/CLI.hpp>
+
 #include "io/array_types.h"
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"

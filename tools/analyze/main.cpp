@@ -1,4 +1,5 @@
 // main.cpp: analyze, numbers out of states and test results; picks the subcommand.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <string>
 #include <string_view>

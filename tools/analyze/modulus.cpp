@@ -1,4 +1,5 @@
 // modulus.cpp: Young's modulus from the last unloading of each bending test.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 

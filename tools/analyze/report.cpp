@@ -1,6 +1,7 @@
 // report.cpp: JSON lines and aligned tables.
 #include "tools/analyze/report.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>

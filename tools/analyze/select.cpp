@@ -1,4 +1,5 @@
 // select.cpp: the states of a stream nearest to given densities, times or places.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>

@@ -1,7 +1,7 @@
 // unloading.cpp: the part of a bending test's curve from which the stiffness is read.
 #include "tools/analyze/unloading.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/Error.hpp>
 #include <algorithm>
 #include <charconv>
 

@@ -1,4 +1,5 @@
 // main.cpp: bend, three-point bending of bonded bars, state by state.
+#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "cli/progress.h"

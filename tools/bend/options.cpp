@@ -1,6 +1,7 @@
 // options.cpp: the options of bend, their help and what must not be combined.
 #include "tools/bend/options.h"
 
+#include <CLI/CLI.hpp>
 #include <utility>
 
 #include "cli/bond_model.h"

@@ -1,10 +1,13 @@
 // options.h: what the user can choose about the bending test.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "mechanics/bond_network.h"
+
+namespace CLI {
+class App;
+}
 
 namespace kiln::bend {
 

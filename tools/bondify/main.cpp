@@ -1,4 +1,5 @@
 // main.cpp: bondify, overlapping particles to bonded particles, state by state.
+#include <CLI/CLI.hpp>
 #include <sstream>
 
 #include "tools/bondify/bondify.h"

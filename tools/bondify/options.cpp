@@ -1,6 +1,7 @@
 // options.cpp: the options of bondify, their help and what must not be combined.
 #include "tools/bondify/options.h"
 
+#include <CLI/CLI.hpp>
 #include <map>
 
 #include "cli/units.h"

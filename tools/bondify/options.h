@@ -1,10 +1,12 @@
 // options.h: what the user can choose about the transition to the bonded-particle model.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "tools/bondify/shrink.h"
 #include "physics/bond_geometry.h"
+
+namespace CLI {
+class App;
+}
 
 namespace kiln::bondify {
 

@@ -1,6 +1,7 @@
 // green.cpp: `sinter green`: parse, pack, write.
 #include "tools/sinter/green.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fstream>

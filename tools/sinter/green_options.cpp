@@ -1,6 +1,7 @@
 // green_options.cpp: names, defaults, help and checks of the options of `sinter green`.
 #include "tools/sinter/green_options.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <limits>
 

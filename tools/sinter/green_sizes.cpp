@@ -1,6 +1,7 @@
 // green_sizes.cpp: reading a size distribution from its text and drawing radii from it.
 #include "tools/sinter/green_sizes.h"
 
+#include <CLI/Error.hpp>
 #include <cmath>
 #include <fstream>
 #include <limits>

@@ -1,4 +1,5 @@
 // main.cpp: `sinter` sinters packings of particles; `sinter green` makes them.
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string_view>
 

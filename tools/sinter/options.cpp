@@ -1,6 +1,7 @@
 // options.cpp: the command line of `sinter`.
 #include "options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "cli/units.h"

@@ -1,11 +1,14 @@
 // options.h: the options of `sinter`, with their defaults, units and checks.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "numerics/sintering.h"
+
+namespace CLI {
+class App;
+}
 
 namespace kiln::sinter {
 

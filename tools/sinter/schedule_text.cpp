@@ -1,6 +1,7 @@
 // schedule_text.cpp: words of a schedule into corners.
 #include "tools/sinter/schedule_text.h"
 
+#include <CLI/Error.hpp>
 #include <cmath>
 #include <optional>
 #include <sstream>
