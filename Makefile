@@ -78,7 +78,7 @@ include demo.mk checks.mk tests/fuzz/fuzz.mk packaging/package.mk
 $(BUILD)/tests/%.o: OPTIMISE := -O1
 
 # ---- tests --------------------------------------------------------------------------------------------------------------------
-test: all $(BUILD)/test/unit $(BUILD)/neighbours-present  ## build and run all tests; ends with "N passed, M failed"
+test: $(BUILD)/neighbours-present all $(BUILD)/test/unit  ## build and run all tests; ends with "N passed, M failed"
 	@BUILD=$(BUILD) PYTHON=$(PYTHON) tests/run.sh
 
 unit-test: $(BUILD)/test/unit   ## closed forms, conservation laws, limits

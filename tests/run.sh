@@ -26,7 +26,10 @@ fi
 
 files=("$@")
 [ ${#files[@]} -gt 0 ] || files=(tests/cli/*.bats)
-bats --tap "${files[@]}" | tee "$log"
+# A file a processor, where GNU parallel is there to do it.
+jobs=()
+! command -v parallel >/dev/null || jobs=(--jobs "$(nproc)" --no-parallelize-within-files)
+bats --tap "${jobs[@]}" "${files[@]}" | tee "$log"
 bats_status=${PIPESTATUS[0]}
 bad=$(grep -c '^not ok' "$log")
 [ "$bats_status" -eq 0 ] || [ "$bad" -gt 0 ] || bad=1

@@ -92,6 +92,7 @@ load stream_support.bash
 }
 
 @test "binary documents do not go to a terminal; text does" {
+    script -qec true /dev/null >/dev/null || skip "no pseudo-terminal here"
     run -1 script -qec "'$BONDIFY' -q '$SHARED/green.dem'" /dev/null
     assert_output --partial "bondify: binary documents do not go to a terminal; use -o FILE, a pipe, or --text"
     run -0 script -qec "'$BONDIFY' -q --text '$CONFORMANCE/valid/minimal.dem'" /dev/null
