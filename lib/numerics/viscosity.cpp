@@ -52,7 +52,7 @@ Contacts contacts_of(const Packing& packing, const Kinetics& kinetics, const phy
         const double reduced = physics::reduced_radius(first, second), aged = std::max(overlap, least_overlap * reduced);
         contacts.pairs.push_back(seen);
         contacts.levers.push_back(pair_vector(packing.box(), clusters.places(), seen));
-        contacts.normals.push_back((turned ? -1.0 : 1.0) * vector.normalized());
+        contacts.normals.emplace_back((turned ? -1.0 : 1.0) * vector.normalized());
         contacts.force.push_back(physics::sintering_force(constants, reduced, kinetics.surface_energy(kind)));
         contacts.normal.push_back(physics::normal_viscosity_factor(constants, reduced) * aged * aged / diffusion[kind]);
         contacts.tangential.push_back(physics::tangential_viscosity(constants, aged, reduced) / diffusion[kind]);

@@ -84,7 +84,7 @@ struct Options {
 void add_contacts(Json& result, const State& state, std::size_t bins) {
     const std::vector<Pair> contacts = contacts_of(state);
     const std::size_t particles = state.particles.size();
-    const double count = static_cast<double>(particles);
+    const auto count = static_cast<double>(particles);
     const std::vector<double> overlaps = overlap_ratios(state, contacts);
     const std::vector<std::size_t> clusters = cluster_sizes(particles, contacts);
     const Eigen::Matrix3d fabric = fabric_tensor(state, contacts);

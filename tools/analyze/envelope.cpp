@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -81,9 +82,10 @@ void around(const Grid& grid, const Vec3& place, double reach, const Visit& visi
     std::array<std::vector<double>, 3> square;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<Eigen::Index>(axis);
-        const double first = std::ceil((place[a] - reach - grid.origin[a]) / grid.step[a]);
-        const double last = std::floor((place[a] + reach - grid.origin[a]) / grid.step[a]);
-        for (double at = first; at <= last; ++at) {
+        const auto first = static_cast<std::int64_t>(std::ceil((place[a] - reach - grid.origin[a]) / grid.step[a]));
+        const auto last = static_cast<std::int64_t>(std::floor((place[a] + reach - grid.origin[a]) / grid.step[a]));
+        for (std::int64_t point = first; point <= last; ++point) {
+            const auto at = static_cast<double>(point);
             const double wrapped = grid.periodic[axis] ? at - std::floor(at / grid.points[axis]) * grid.points[axis] : at;
             if (wrapped < 0.0 || wrapped >= grid.points[axis]) continue;
             const double offset = grid.origin[a] + at * grid.step[a] - place[a];
@@ -169,7 +171,7 @@ std::vector<float> squares_from_front(const Grid& grid, const std::vector<float>
 
 double envelope_volume(const State& state, double probe) {
     const Particles& particles = state.particles;
-    const double count = static_cast<double>(particles.size());
+    const auto count = static_cast<double>(particles.size());
     const double diameter = 2.0 * std::accumulate(particles.radius.begin(), particles.radius.end(), 0.0) / count;
     const double spacing = std::min(diameter, probe) / (particles.size() < few_particles ? 12.0 : 6.0);
     const Grid grid = grid_for(state, probe, spacing);

@@ -21,7 +21,7 @@ Json histogram_of(std::span<const double> values, std::size_t bins, double lower
 
 Json spread_of(std::span<const double> values) {
     if (values.empty()) return nullptr;
-    const double count = static_cast<double>(values.size());
+    const auto count = static_cast<double>(values.size());
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
     double squares = 0.0;
     for (const double value : values) squares += (value - mean) * (value - mean);

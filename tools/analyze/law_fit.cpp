@@ -75,7 +75,7 @@ double weighted_r_squared(Values modulus, Values weight, Values residuals) {
 void add_criteria(Fit& fit, Values weight, std::size_t parameters) {
     double sum = 0.0;
     for (std::size_t point = 0; point < weight.size(); ++point) sum += weight[point] * fit.residuals[point] * fit.residuals[point];
-    const double n = static_cast<double>(weight.size()), k = static_cast<double>(parameters + 1);
+    const auto n = static_cast<double>(weight.size()), k = static_cast<double>(parameters + 1);
     if (fit.degrees_of_freedom > 0) fit.scatter = sum / static_cast<double>(fit.degrees_of_freedom);
     fit.aic = n * std::log(std::max(sum, std::numeric_limits<double>::min()) / n) + 2.0 * k;
     if (n > k + 1.0) fit.aicc = fit.aic + 2.0 * k * (k + 1.0) / (n - k - 1.0);

@@ -48,7 +48,7 @@ PairCorrelation pair_correlation(const State& state, double range, std::size_t b
         const int ends = inner[static_cast<std::size_t>(pair.i)] + inner[static_cast<std::size_t>(pair.j)];
         counts[std::min(static_cast<std::size_t>(distance / width), bins - 1)] += ends;
     }
-    const double centres = static_cast<double>(result.centres);
+    const auto centres = static_cast<double>(result.centres);
     for (std::size_t bin = 0; bin < bins; ++bin) {
         const double inside = static_cast<double>(bin) * width, outside = inside + width;
         const double shell = 4.0 / 3.0 * std::numbers::pi * (outside * outside * outside - inside * inside * inside);

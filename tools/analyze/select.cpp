@@ -72,15 +72,13 @@ struct Choice {
     std::shared_ptr<const State> state{};
 };
 
-void consider(std::vector<Choice>& choices, const Options& options, State&& candidate, std::size_t number) {
-    const std::optional<double> value = options.value_of(candidate, number);
+void consider(std::vector<Choice>& choices, const Options& options, const std::shared_ptr<const State>& candidate,
+              std::size_t number) {
+    const std::optional<double> value = options.value_of(*candidate, number);
     if (!value) return;
-    std::shared_ptr<const State> shared;
     for (Choice& choice : choices) {
         const double distance = std::abs(*value - choice.wanted);
-        if (!(distance < choice.distance)) continue;
-        if (!shared) shared = std::make_shared<const State>(std::move(candidate));
-        choice = {choice.wanted, *value, distance, shared};
+        if (distance < choice.distance) choice = {choice.wanted, *value, distance, candidate};
     }
 }
 
@@ -123,7 +121,7 @@ std::size_t read(io::Input& input, const Options& options, std::vector<Choice>& 
     std::optional<Place> before;
     while (auto state = input.next_state()) {
         if (!options.interpolate) {
-            consider(choices, options, std::move(*state), ++states);
+            consider(choices, options, std::make_shared<const State>(std::move(*state)), ++states);
             continue;
         }
         const std::optional<double> value = options.value_of(*state, ++states);
