@@ -7,7 +7,7 @@ ARCHER      ?= /usr/lib/llvm-14/lib/libarcher.so
 .PHONY: asan tsan tidy same-bytes
 
 asan:                           ## build with address and undefined-behaviour sanitizers into build-asan and run all tests
-	$(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \
+	SANITIZED=1 $(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \
 	    OPTIMISE="-O1 -UNDEBUG" test
 
 # OpenMP's barriers are known to the sanitizer through libomp and its tool Archer; gcc's libgomp would look like a race throughout.
