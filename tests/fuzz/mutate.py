@@ -97,7 +97,7 @@ def check_output(command, output):
 
 
 # The address sanitizer reserves more than any limit of address space, and counts the memory that is used itself.
-SANITIZED = {**os.environ, "ASAN_OPTIONS": f"hard_rss_limit_mb={MEMORY >> 20}"}
+SANITIZED = {**os.environ, "ASAN_OPTIONS": "hard_rss_limit_mb={0}:max_allocation_size_mb={0}".format(MEMORY >> 20)}
 
 
 def limit_memory():
