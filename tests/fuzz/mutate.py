@@ -22,7 +22,8 @@ MEMORY = 1 << 30  # bytes of address space; the streams have 2 to 20 kB
 SENTENCE = re.compile(r"^(sinter|bondify|bend|analyze)( [a-z]+)?: [^\x00-\x1f]+$")
 # What may have no value: fits and means of too few things, what a state does not hold.
 NULLS = {"standard_error", "confidence_interval", "covariance", "standard_errors", "confidence_intervals", "r_squared", "aicc",
-         "aic", "relative_density", "mean_diameter", "mean_length", "mean_overlap_ratio", "tensile_strength", "shear_strength"}
+         "aic", "confidence", "prediction", "relative_density", "mean_diameter", "mean_length", "mean_overlap_ratio",
+         "tensile_strength", "shear_strength"}
 FINITE = {"particles": ("position", "radius"), "bonds": ("radius", "length", "volume", "force", "moment", "normal_force")}
 
 
@@ -76,7 +77,7 @@ def check_values(value, key=""):
         raise ValueError(f"{key} is null")
     inner = value.items() if isinstance(value, dict) else [(key, each) for each in value] if isinstance(value, list) else []
     for name, each in inner:
-        check_values(each, name)
+        check_values(each, key if key in NULLS else name)
 
 
 def check_output(command, output):
