@@ -67,10 +67,10 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
     for (const PairStep& pair : step) levers_.push_back(pair.lever);
 }
 
-Vec3 SinterStep::relative(std::size_t row, const Motion& motion, const Vec3& lever) const {
+Vec3 SinterStep::relative(std::size_t row, const Motion& motion) const {
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].i)]);
     const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].j)]);
-    return b - a + motion.strain.cwiseProduct(lever);
+    return b - a + motion.strain.cwiseProduct(levers_[row]);
 }
 
 SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double share, double goal,
@@ -96,7 +96,7 @@ void SinterStep::midpoint_geometry(const Motion& motion) {
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < step_.size(); ++row) {
         const PairStep& pair = step_[row];
-        const Vec3 end = pair.vector + relative(row, motion, pair.lever);
+        const Vec3 end = pair.vector + relative(row, motion);
         const double end_overlap = pair.overlap + pair.distance - end.norm();
         const double share = touching_share(pair.overlap, end_overlap);
         rows_[row] = pair_force(row, (pair.vector + end).normalized(), share, alone(pair, share), end_overlap);
@@ -207,7 +207,7 @@ bool SinterStep::minimise(double tolerance, Motion& motion, StepReport& report) 
     bool converged = newton(tolerance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
-            [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion, levers_[row])); },
+            [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
             [&](std::size_t row) { return limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == most_limit_passes) return false;

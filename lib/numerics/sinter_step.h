@@ -62,7 +62,7 @@ class SinterStep {
         double overlap, cubic, goal, drive, tangential;  // h; K/I; h at the end if alone; share of f; kt
     };
     /// Relative motion of pair `row` under a motion, m.
-    Vec3 relative(std::size_t row, const Motion& motion, const Vec3& lever) const;
+    Vec3 relative(std::size_t row, const Motion& motion) const;
     /// Of a pair with this normal that touches for a share of the step; goal, end_overlap: overlap at the end, alone and expected.
     PairForce pair_force(std::size_t row, const Vec3& normal, double share, double goal, double end_overlap) const;
     void start_geometry();

@@ -97,12 +97,8 @@ def check_output(command, output):
                     raise ValueError(f"{group}.{name} is not finite")
 
 
-# The address sanitizer reserves more than any limit of address space, and counts the memory that is used itself.
-SANITIZED = {**os.environ, "ASAN_OPTIONS": "hard_rss_limit_mb={0}:max_allocation_size_mb={0}".format(MEMORY >> 20)}
-
-
 def limit_memory():
-    """Of this process, unless it is a sanitized build (`make asan` says so)."""
+    """Of this process; not of a sanitized build (`make asan` says so), which reserves more and has limits of its own."""
     if "SANITIZED" not in os.environ:
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
@@ -110,7 +106,7 @@ def limit_memory():
 def check(command, given):
     """Status of a run: 0 and 3 with sound output, 1 with one sentence. Throws ValueError for any other end."""
     try:
-        ended = run(command, given, preexec_fn=limit_memory, env=SANITIZED)
+        ended = run(command, given, preexec_fn=limit_memory)
     except subprocess.TimeoutExpired:
         raise ValueError(f"took longer than {LONGEST} s") from None
     said = [line for line in ended.stderr.decode(errors="replace").splitlines() if ": warning: " not in line]
@@ -133,6 +129,7 @@ def main():
     parser.add_argument("--keep", default=".", metavar="FOLDER", help="where the mutants go that a program did not stand")
     options = parser.parse_args()
     os.environ["OMP_NUM_THREADS"] = "1"
+    os.environ["ASAN_OPTIONS"] = "hard_rss_limit_mb={0}:max_allocation_size_mb={0}".format(MEMORY >> 20)
     valid = seeds()
     ends, faults, slowest = collections.Counter(), 0, 0.0
     for seed in range(options.first, options.first + options.count):
