@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/spatial_order.h"
-#include "numerics/preconditioner.h"
+#include "sintering/preconditioner.h"
 
 namespace {
 
@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
     Box box;
     const std::vector<Vec3> position = packing(edge, box);
     const std::vector<Pair> pairs = find_pairs(box, position, std::vector<double>(position.size(), 0.76));
-    const numerics::ContactNetwork network(box, position, pairs);
-    numerics::Stiffness stiffness(network);
+    const sintering::ContactNetwork network(box, position, pairs);
+    sintering::Stiffness stiffness(network);
     std::vector<Vec3> levers;
     for (const Pair& pair : pairs) levers.push_back(pair_vector(box, position, pair));
     for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
@@ -81,10 +81,10 @@ int main(int argc, char** argv) {
         stiffness.set_direction(entry, normal);
         stiffness.set(entry, 1.0, 0.1);
     }
-    numerics::QuadMotion in(position.size()), out(position.size());
+    sintering::QuadMotion in(position.size()), out(position.size());
     for (std::size_t row = 0; row < position.size(); ++row)
-        in.displacement[row] = numerics::quad(static_cast<double>(row % 17), static_cast<double>(row % 5), 1.0);
-    std::vector<numerics::Quad> total(position.size());
+        in.displacement[row] = sintering::quad(static_cast<double>(row % 17), static_cast<double>(row % 5), 1.0);
+    std::vector<sintering::Quad> total(position.size());
     const auto particles = static_cast<double>(position.size()), entries = static_cast<double>(network.first.size());
 
     triad(static_cast<std::size_t>(particles) * 32);
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
             network.for_chunks([&](std::size_t chunk) { stiffness.displace(chunk, in, total); });
             network.for_chunks([&](std::size_t chunk) { stiffness.multiply(chunk, in.strain, total, out); });
         }));
-    numerics::Preconditioner preconditioner(network);
+    sintering::Preconditioner preconditioner(network);
     preconditioner.factorise(stiffness, levers);
     // Twice a block of 36 bytes and its column for each contact inside a chunk; 36 bytes of the diagonal, residual and result.
     double inside = 0.0;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "numerics/kinetics.h"
+#include "sintering/kinetics.h"
 #include "tests/physics/sintering_cases.h"
 #include "tools/sinter/schedule_text.h"
 
@@ -43,7 +43,7 @@ TEST_CASE("words of a schedule that do not fit are named") {
 
 TEST_CASE("diffusion over a ramp is the exponential integral to rounding") {
     const State state = state_of({{0, 0, 0}}, {50e-9}, Vec3::Constant(1e-6), true);
-    const numerics::Kinetics kinetics(state, firing);
+    const sintering::Kinetics kinetics(state, firing);
     const Material& alumina = state.materials[0];
     const double a = *alumina.activation_energy / physics::gas_constant;
     const double factor = *alumina.atomic_volume * *alumina.diffusion_prefactor / physics::boltzmann_constant;
@@ -58,7 +58,7 @@ TEST_CASE("diffusion over a ramp is the exponential integral to rounding") {
 }
 
 TEST_CASE("the time after an equivalent time is its inverse, on ramps, holds and across corners") {
-    const numerics::Kinetics kinetics(state_of({{0, 0, 0}}, {50e-9}, Vec3::Constant(1e-6), true), firing);
+    const sintering::Kinetics kinetics(state_of({{0, 0, 0}}, {50e-9}, Vec3::Constant(1e-6), true), firing);
     for (const double from : {0.0, 6000.0, 7000.0, 7100.0, 7700.0})
         for (const double equivalent : {1e-9, 1e-3, 1.0, 20.0}) {
             const double until = kinetics.after(from, equivalent);
@@ -70,11 +70,11 @@ TEST_CASE("the time after an equivalent time is its inverse, on ramps, holds and
 
 TEST_CASE("a programme gives the density of a hold at the same integral of Delta") {
     const State start = random_packing(150, 0.5, 1.0);
-    numerics::SinteringSettings programme = settings(1e-4);
+    sintering::SinteringSettings programme = settings(1e-4);
     programme.schedule = sinter::parse_schedule("25C 10K/min 1150C 2min 10K/min 25C");
-    numerics::ImplicitSintering fired(start, programme);
+    sintering::ImplicitSintering fired(start, programme);
     while (fired.time() < programme.schedule.end()) REQUIRE(fired.advance(programme.schedule.end(), endless).converged);
-    const numerics::Kinetics kinetics(start, programme.schedule);
+    const sintering::Kinetics kinetics(start, programme.schedule);
     const double same = kinetics.diffusion_over(0.0, programme.schedule.end())[0] / diffusion();
     CHECK(deviation(fired.relative_density(), relative_density(sintered(start, same, settings(1e-4)))) < 5e-4);
     CHECK(fired.relative_density() > 0.51);

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "numerics/viscosity.h"
+#include "sintering/viscosity.h"
 #include "tests/physics/sintering_cases.h"
 
 using namespace kiln;
@@ -35,7 +35,7 @@ double overlap_of(const State& state, int axis) { return 2.0 * radius - state.bo
 
 TEST_CASE("a simple cubic cell under pressure closes as a pair pressed with the force on its face") {
     const double pressure = 20e6, time = 5.0, start = 2.0 * radius * 0.02;
-    numerics::SinteringSettings wanted = settings(1e-5);
+    sintering::SinteringSettings wanted = settings(1e-5);
     wanted.pressure = Vec3(0.0, 0.0, pressure);
     const State end = sintered(simple_cubic(0.02), time, wanted);
     // dh/dt = (9/8 pi 2R* gamma + P) 8 Delta/(pi a^4), P = p L_x L_y, with the other two axes by the pair law: Runge-Kutta.
@@ -57,20 +57,20 @@ TEST_CASE("a simple cubic cell under pressure closes as a pair pressed with the 
 }
 
 TEST_CASE("stress: minus the pressure along a loaded axis, tension along a fixed one, none along a free one") {
-    numerics::SinteringSettings wanted = settings();
+    sintering::SinteringSettings wanted = settings();
     wanted.pressure = Vec3(0.0, 0.0, 5e6);
     wanted.fixed = {true, false, false};
-    numerics::ImplicitSintering sintering(face_centred(0.03), wanted);
-    const numerics::StepRecord record = sintering.advance(1.0, endless);
+    sintering::ImplicitSintering sintering(face_centred(0.03), wanted);
+    const sintering::StepRecord record = sintering.advance(1.0, endless);
     CHECK(deviation(record.stress[2], -5e6) < 1e-5);
     CHECK(std::abs(record.stress[1]) < 1e2);
     CHECK(record.stress[0] > 1e6);
     CHECK(record.strain[0] == 0.0);
     CHECK_THROWS_WITH_AS(([] {
-                             numerics::SinteringSettings both = settings();
+                             sintering::SinteringSettings both = settings();
                              both.pressure = Vec3(1e6, 0.0, 0.0);
                              both.fixed = {true, false, false};
-                             return numerics::ImplicitSintering(face_centred(0.03), both);
+                             return sintering::ImplicitSintering(face_centred(0.03), both);
                          }()),
                          doctest::Contains("pressure"), Error);
 }
@@ -78,9 +78,9 @@ TEST_CASE("stress: minus the pressure along a loaded axis, tension along a fixed
 TEST_CASE("a face-centred film shrinks across its plane by C12 and C11 of its viscosities") {
     const double s = 0.05, overlap = 2.0 * radius * s;
     const auto rate = [&](bool film) {
-        numerics::SinteringSettings wanted = settings();
+        sintering::SinteringSettings wanted = settings();
         wanted.fixed = {film, film, false};
-        numerics::ImplicitSintering sintering(face_centred(s), wanted);
+        sintering::ImplicitSintering sintering(face_centred(s), wanted);
         const double time = 1e-4 * std::pow(overlap, 3) * 0.5 * radius / (3.375 * diffusion() * surface_energy());
         return sintering.advance(time, endless).strain[2] / time;
     };
@@ -96,7 +96,7 @@ TEST_CASE("sintering stress and viscosities of a face-centred lattice are those 
     const double s = 0.04, overlap = 2.0 * radius * s;
     State state = face_centred(s);
     const double density = relative_density(state), spacing = 2.0 * radius - overlap;
-    const numerics::ViscousResponse response = numerics::viscous_response(state, {}, temperature);
+    const sintering::ViscousResponse response = sintering::viscous_response(state, {}, temperature);
     const physics::ContactConstants constants;
     const double normal = physics::normal_viscosity_factor(constants, 0.5 * radius) * overlap * overlap / diffusion();
     const double shear = physics::tangential_viscosity(constants, overlap, 0.5 * radius) / diffusion();
@@ -109,12 +109,12 @@ TEST_CASE("sintering stress and viscosities of a face-centred lattice are those 
     const double neck = std::pow(physics::contact_radius_squared(overlap, 0.5 * radius), 2);
     CHECK(deviation(response.bulk_viscosity(), 12.0 * density * neck / (48.0 * diffusion() * radius) * shorter * shorter) < 1e-6);
     state.box.periodic[0] = false;
-    CHECK_THROWS_AS(numerics::viscous_response(state, {}, temperature), Error);
+    CHECK_THROWS_AS(sintering::viscous_response(state, {}, temperature), Error);
 }
 
 TEST_CASE("viscosities of a random packing are symmetric, below the affine bound, and predict its free shrinkage") {
     const State state = sintered(random_packing(400, 0.55, 1.0), 30.0);
-    const numerics::ViscousResponse response = numerics::viscous_response(state, {}, temperature);
+    const sintering::ViscousResponse response = sintering::viscous_response(state, {}, temperature);
     CHECK(response.converged);
     CHECK((response.viscosity - response.viscosity.transpose()).norm() < 1e-5 * response.viscosity.norm());
     const ContactStatistics contacts =
@@ -124,7 +124,7 @@ TEST_CASE("viscosities of a random packing are symmetric, below the affine bound
     CHECK(response.mean_sintering_stress() < 1.01 * bound);
     CHECK(response.shear_viscosity() > 0.0);
     // strain rate = -K^-1 (sintering stress)
-    numerics::ImplicitSintering sintering(state, settings(1e-5));
+    sintering::ImplicitSintering sintering(state, settings(1e-5));
     const double time = 0.02;
     while (sintering.time() < state.time + time) sintering.advance(state.time + time, endless);
     const double predicted = -response.viscosity.ldlt().solve(response.sintering_stress).sum() * time;
@@ -138,8 +138,8 @@ TEST_CASE("a free cube of a lattice shrinks as the lattice does, its box with it
         for (int y = 0; y < 4; ++y)
             for (int z = 0; z < 4; ++z) positions.push_back(spacing * (Vec3(x, y, z) + Vec3::Constant(0.5)));
     State state = state_of(positions, std::vector<double>(64, radius), Vec3::Constant(4.0 * spacing), true);
-    numerics::SinteringSettings wanted = settings();
-    wanted.faces = numerics::Faces::free;
+    sintering::SinteringSettings wanted = settings();
+    wanted.faces = sintering::Faces::free;
     const double before = relative_density(state);
     const State end = sintered(state, time, wanted);
     const double reached = pair_law(2.0 * radius * s, 0.5 * radius, time) / (2.0 * radius);

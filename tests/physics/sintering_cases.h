@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/neighbours.h"
-#include "numerics/implicit_sintering.h"
+#include "sintering/implicit_sintering.h"
 #include "physics/diffusion.h"
 #include "physics/materials.h"
 #include "tests/physics/relative.h"
@@ -38,8 +38,8 @@ inline State state_of(const std::vector<Vec3>& positions, const std::vector<doub
     return state;
 }
 
-inline numerics::SinteringSettings settings(double tolerance = 1e-3) {
-    numerics::SinteringSettings wanted;
+inline sintering::SinteringSettings settings(double tolerance = 1e-3) {
+    sintering::SinteringSettings wanted;
     wanted.schedule = physics::Schedule::hold(temperature);
     wanted.tolerance = tolerance;
     wanted.solver_tolerance = 1e-7;
@@ -47,10 +47,10 @@ inline numerics::SinteringSettings settings(double tolerance = 1e-3) {
 }
 
 /// Sinters until the time and gives the state there.
-inline State sintered(State state, double time, const numerics::SinteringSettings& wanted = settings()) {
-    numerics::ImplicitSintering sintering(std::move(state), wanted);
+inline State sintered(State state, double time, const sintering::SinteringSettings& wanted = settings()) {
+    sintering::ImplicitSintering sintering(std::move(state), wanted);
     while (sintering.time() < time) {
-        const numerics::StepRecord record = sintering.advance(time, endless);
+        const sintering::StepRecord record = sintering.advance(time, endless);
         REQUIRE(record.converged);
         REQUIRE(std::isfinite(record.relative_density));
     }

@@ -105,7 +105,7 @@ TEST_CASE("a box that a chain of inclusions spans does not strain along it") {
     state.box.lengths[0] = state.box.lengths[1] = 2.1 * radius;
     MaterialPair pair = pair_with(std::nullopt, diffusion());
     state.contacts.push_back(pair);
-    numerics::ImplicitSintering sintering(state, settings());
+    sintering::ImplicitSintering sintering(state, settings());
     while (sintering.time() < 5.0) REQUIRE(sintering.advance(5.0, endless).converged);
     CHECK(sintering.state().box.lengths[2] == 2.0 * radius - 1e-9);
     CHECK(sintering.state().box.lengths[0] < 2.1 * radius);
@@ -124,5 +124,5 @@ TEST_CASE("the overlap stops where the neck meets the dihedral angle") {
 TEST_CASE("nothing sinters where no pair of materials diffuses") {
     State state = row_of({1, 1}, {1e-9});
     state.materials[0] = inclusion();
-    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(state, settings()), doctest::Contains("nothing can sinter"), Error);
+    CHECK_THROWS_WITH_AS(sintering::ImplicitSintering(state, settings()), doctest::Contains("nothing can sinter"), Error);
 }

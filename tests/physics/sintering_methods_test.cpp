@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "numerics/explicit_sintering.h"
+#include "sintering/explicit_sintering.h"
 #include "tests/physics/sintering_cases.h"
 
 using namespace kiln;
@@ -15,9 +15,9 @@ namespace {
 constexpr double radius = 50e-9;
 
 State explicitly_sintered(State state, double time, double mass_scaling) {
-    numerics::SinteringSettings wanted = settings();
+    sintering::SinteringSettings wanted = settings();
     wanted.mass_scaling = mass_scaling;
-    numerics::ExplicitSintering sintering(std::move(state), wanted);
+    sintering::ExplicitSintering sintering(std::move(state), wanted);
     while (sintering.time() < time) sintering.advance(time, endless);
     return sintering.state();
 }
@@ -60,9 +60,9 @@ State shaken_crystal() {
 TEST_CASE("the implicit step is of second order in time where contacts last") {
     const State start = shaken_crystal();
     const auto positions_after = [&](int steps) {
-        numerics::SinteringSettings wanted = settings(0.9);  // the length of the steps is given here, not controlled
+        sintering::SinteringSettings wanted = settings(0.9);  // the length of the steps is given here, not controlled
         wanted.solver_tolerance = 1e-8;
-        numerics::ImplicitSintering sintering(start, wanted);
+        sintering::ImplicitSintering sintering(start, wanted);
         constexpr double time = 20.0;  // s, in which the density grows by a fifth
         for (int step = 1; step <= steps; ++step) {
             const double until = time * step / steps;
@@ -106,8 +106,8 @@ TEST_CASE("explicit and implicit come to the same positions as the mass falls, p
     for (const bool periodic : {true, false}) {
         const State start = periodic ? sintered(random_packing(30, 0.55, 1.0), 20.0) : sintered(free_cluster(), 20.0);
         const double time = start.time + 1.0;
-        numerics::SinteringSettings wanted = settings(1e-5);
-        numerics::ImplicitSintering sintering(start, wanted);
+        sintering::SinteringSettings wanted = settings(1e-5);
+        sintering::ImplicitSintering sintering(start, wanted);
         while (sintering.time() < time) sintering.advance(time, endless);
         const State expected = sintering.state();
         double before = 1.0;
@@ -138,19 +138,19 @@ TEST_CASE("a run taken up from its checkpoint goes on as if it had not been brok
         }
         second.restore(first.checkpoint());
         for (int step = 0; step < 4; ++step) {
-            const numerics::StepRecord a = whole.advance(40.0, 0.6), b = second.advance(40.0, 0.6);
+            const sintering::StepRecord a = whole.advance(40.0, 0.6), b = second.advance(40.0, 0.6);
             CHECK(a.relative_density == b.relative_density);
             CHECK(a.newton == b.newton);
         }
         CHECK(whole.state().particles.position == second.state().particles.position);
         CHECK(whole.steps() == second.steps());
     };
-    numerics::ImplicitSintering whole(start, settings()), first(start, settings()), second(start, settings());
+    sintering::ImplicitSintering whole(start, settings()), first(start, settings()), second(start, settings());
     same(whole, first, second);
-    numerics::SinteringSettings light = settings();
+    sintering::SinteringSettings light = settings();
     light.mass_scaling = 1e19;
-    numerics::ExplicitSintering explicit_whole(start, light), explicit_first(start, light), explicit_second(start, light);
+    sintering::ExplicitSintering explicit_whole(start, light), explicit_first(start, light), explicit_second(start, light);
     same(explicit_whole, explicit_first, explicit_second);
-    numerics::ImplicitSintering other(random_packing(100, 0.5, 1.0), settings());
+    sintering::ImplicitSintering other(random_packing(100, 0.5, 1.0), settings());
     CHECK_THROWS_WITH_AS(other.restore(first.checkpoint()), doctest::Contains("150 particles"), Error);
 }

@@ -56,8 +56,8 @@ TEST_CASE(
         for (const Vec3& site : lattice.sites) positions.push_back(site * cell);
         State state = state_of(positions, std::vector<double>(positions.size(), radius), Vec3::Constant(cell), true);
         const double loose = relative_density(state) * std::pow(1.0 - start, 3);
-        numerics::ImplicitSintering sintering(std::move(state), settings());
-        numerics::StepRecord record{};
+        sintering::ImplicitSintering sintering(std::move(state), settings());
+        sintering::StepRecord record{};
         while (sintering.time() < time) record = sintering.advance(time, endless);
         CHECK(deviation(sintering.relative_density(), loose / std::pow(1.0 - reached, 3)) < 1e-5);
         CHECK(record.contacts.coordination_number == lattice.coordination);
@@ -73,9 +73,9 @@ TEST_CASE("lengths times lambda take times times lambda^4") {
 }
 
 TEST_CASE("a wanted density is met to 1e-6 and the same state is reached by way of others") {
-    numerics::ImplicitSintering direct(random_packing(150, 0.5, 1.0), settings()),
+    sintering::ImplicitSintering direct(random_packing(150, 0.5, 1.0), settings()),
         stopped(random_packing(150, 0.5, 1.0), settings());
-    const auto reach = [](numerics::ImplicitSintering& sintering, double density) {
+    const auto reach = [](sintering::ImplicitSintering& sintering, double density) {
         while (sintering.relative_density() < density * (1.0 - 1e-6)) REQUIRE(sintering.advance(endless, density).converged);
         CHECK(deviation(sintering.relative_density(), density) < 1e-6);
     };
@@ -96,7 +96,7 @@ TEST_CASE("smaller tolerance, smaller error of the density at a fixed time") {
 
 TEST_CASE("particles without contacts move with the box, and a density that nothing drives to is one sentence") {
     State state = state_of({{1e-7, 1e-7, 1e-7}, {5e-7, 5e-7, 5e-7}}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true);
-    numerics::ImplicitSintering sintering(std::move(state), settings());
+    sintering::ImplicitSintering sintering(std::move(state), settings());
     CHECK_THROWS_WITH_AS(
         [&] {
             for (;;) sintering.advance(endless, 0.5);
@@ -108,7 +108,7 @@ TEST_CASE("axes that no contacts reach through follow those that contacts do rea
     const double radius = 50e-9, spacing = 2.0 * radius - 1e-9;
     State rod =
         state_of({{0.5 * spacing, 3e-7, 3e-7}, {1.5 * spacing, 3e-7, 3e-7}}, {radius, radius}, {2.0 * spacing, 6e-7, 6e-7}, true);
-    numerics::ImplicitSintering sintering(std::move(rod), settings());
+    sintering::ImplicitSintering sintering(std::move(rod), settings());
     const double time = 20.0;
     while (sintering.time() < time) sintering.advance(time, endless);
     const Vec3 lengths = sintering.state().box.lengths;
@@ -154,10 +154,10 @@ TEST_CASE("size ratios of 10 and 100 stay finite and converge") {
 TEST_CASE("coincident centres and missing data are refused by name") {
     const Vec3 place(1e-7, 1e-7, 1e-7);
     CHECK_THROWS_WITH_AS(
-        numerics::ImplicitSintering(state_of({place, place}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true), settings()),
+        sintering::ImplicitSintering(state_of({place, place}, {50e-9, 50e-9}, Vec3::Constant(1e-6), true), settings()),
         doctest::Contains("particles 1 and 2 coincide"), Error);
     State poor = state_of({place}, {50e-9}, Vec3::Constant(1e-6), true);
     poor.materials[0].surface_energy.reset();
-    CHECK_THROWS_WITH_AS(numerics::ImplicitSintering(std::move(poor), settings()), "material 'alumina' has no surface_energy",
+    CHECK_THROWS_WITH_AS(sintering::ImplicitSintering(std::move(poor), settings()), "material 'alumina' has no surface_energy",
                          Error);
 }

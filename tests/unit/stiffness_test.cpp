@@ -3,10 +3,10 @@
 
 #include <random>
 
-#include "numerics/conjugate_gradients.h"
+#include "sintering/conjugate_gradients.h"
 
 using namespace kiln;
-using namespace kiln::numerics;
+using namespace kiln::sintering;
 
 namespace {
 

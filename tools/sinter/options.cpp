@@ -114,13 +114,13 @@ void Options::check(const std::string& output) const {
     if (!schedule.empty()) parse_schedule(schedule);
 }
 
-numerics::SinteringSettings Options::settings(double start) const {
-    numerics::SinteringSettings settings;
+sintering::SinteringSettings Options::settings(double start) const {
+    sintering::SinteringSettings settings;
     settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : parse_schedule(schedule).from(start);
     settings.constants = constants;
-    settings.faces = boundary == "free"       ? numerics::Faces::free
-                     : boundary == "periodic" ? numerics::Faces::periodic
-                                              : numerics::Faces::as_given;
+    settings.faces = boundary == "free"       ? sintering::Faces::free
+                     : boundary == "periodic" ? sintering::Faces::periodic
+                                              : sintering::Faces::as_given;
     for (const char axis : fixed) settings.fixed[static_cast<std::size_t>(axis - 'x')] = true;
     for (std::size_t axis = 0; axis < 3 && !pressure.empty(); ++axis)
         settings.pressure[static_cast<Eigen::Index>(axis)] = pressure[pressure.size() == 1 ? 0 : axis];

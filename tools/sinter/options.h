@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "numerics/sintering.h"
+#include "sintering/sintering.h"
 
 namespace CLI {
 class App;
@@ -38,7 +38,7 @@ struct Options {
     void check(const std::string& output) const;
 
     /// Settings of the method for a state; wanted times and the schedule count from the state's own time.
-    numerics::SinteringSettings settings(double start) const;
+    sintering::SinteringSettings settings(double start) const;
 
     /// Time at which the run ends if nothing else ends it, s; infinity for a hold.
     double last_time(double start) const;

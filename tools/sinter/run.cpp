@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "cli/tool.h"
-#include "numerics/explicit_sintering.h"
-#include "numerics/implicit_sintering.h"
-#include "numerics/viscosity.h"
+#include "sintering/explicit_sintering.h"
+#include "sintering/implicit_sintering.h"
+#include "sintering/viscosity.h"
 #include "tools/sinter/wanted.h"
 
 namespace kiln::sinter {
@@ -22,9 +22,9 @@ constexpr double same_density = 1e-6;   // relative
 constexpr double most_contacts = 60.0;  // mean coordination number; a body without pores has about 14
 constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
 
-using numerics::triple;
+using sintering::triple;
 
-Json summary_of(const numerics::StepRecord& record, const std::string& method) {
+Json summary_of(const sintering::StepRecord& record, const std::string& method) {
     Json summary{{"method", method},
                  {"time", record.time},
                  {"duration", record.duration},
@@ -44,7 +44,7 @@ Json summary_of(const numerics::StepRecord& record, const std::string& method) {
 }
 
 void add_viscosities(Json& summary, const State& state, const Options& options) {
-    const numerics::ViscousResponse response = numerics::viscous_response(state, options.constants, *state.temperature);
+    const sintering::ViscousResponse response = sintering::viscous_response(state, options.constants, *state.temperature);
     summary["sintering_stress"] = response.mean_sintering_stress();
     summary["bulk_viscosity"] = response.bulk_viscosity();
     summary["shear_viscosity"] = response.shear_viscosity();
@@ -52,10 +52,10 @@ void add_viscosities(Json& summary, const State& state, const Options& options) 
                             triple(response.viscosity.row(2))};
 }
 
-std::unique_ptr<numerics::SinteringMethod> method_of(State state, const Options& options) {
-    const numerics::SinteringSettings settings = options.settings(state.time);
-    if (options.method == "explicit") return std::make_unique<numerics::ExplicitSintering>(std::move(state), settings);
-    return std::make_unique<numerics::ImplicitSintering>(std::move(state), settings);
+std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options& options) {
+    const sintering::SinteringSettings settings = options.settings(state.time);
+    if (options.method == "explicit") return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
+    return std::make_unique<sintering::ImplicitSintering>(std::move(state), settings);
 }
 
 /// One state on its way.
@@ -109,7 +109,7 @@ class Sintered {
 
     void step() {
         const double density = method_->relative_density(), time_goal = wanted_.next_time(method_->time());
-        const numerics::StepRecord record = method_->advance(time_goal, std::min(wanted_.next_density(), full_density));
+        const sintering::StepRecord record = method_->advance(time_goal, std::min(wanted_.next_density(), full_density));
         progressed_.newton += record.newton;
         progressed_.conjugate_gradients += record.conjugate_gradients;
         progressed_.converged = progressed_.converged && record.converged;
@@ -145,7 +145,7 @@ class Sintered {
     const Sinks& sinks_;
     Progressed progressed_;
     Wanted wanted_;
-    std::unique_ptr<numerics::SinteringMethod> method_;
+    std::unique_ptr<sintering::SinteringMethod> method_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// packing.h: a packing on its way through sintering: particles in memory order, pairs near touch, density, strains; either
+// sintering_body.h: a packing on its way through sintering: particles in memory order, pairs near touch, density, strains; either
 // method's.
 #pragma once
 
@@ -6,19 +6,19 @@
 
 #include "core/contacts.h"
 #include "core/state.h"
-#include "numerics/contact_network.h"
+#include "sintering/contact_network.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Which faces of the box are periodic.
 enum class Faces { as_given, periodic, free };
 
 /// Owns the state while it sinters. Particles stand in the order of a space-filling curve, positions unwrapped, so that the images
 /// of pairs stay what they were when the list was made.
-class Packing {
+class SinteringBody {
    public:
     /// Throws Error where there are no particles, bonds, or centres that coincide.
-    Packing(State state, Faces faces);
+    SinteringBody(State state, Faces faces);
 
     const Box& box() const { return state_.box; }
     const Particles& particles() const { return state_.particles; }
@@ -83,4 +83,4 @@ class Packing {
     Vec3 strain_ = Vec3::Zero();
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -7,7 +7,7 @@
 #include "core/state.h"
 #include "physics/schedule.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Tables over pairs of materials. Steps are measured by equivalent time: that at the highest temperature of the schedule in which
 /// the fastest pair would have diffused as much. Under a constant temperature it is time itself.
@@ -68,4 +68,4 @@ class Kinetics {
     std::vector<double> times_;  // ends of the schedule's panels, s; none for a hold without end
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

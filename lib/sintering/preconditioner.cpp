@@ -1,10 +1,10 @@
 // preconditioner.cpp: the block incomplete factorisation and its two triangular solves, chunk by chunk.
-#include "numerics/preconditioner.h"
+#include "sintering/preconditioner.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -139,4 +139,4 @@ void Preconditioner::apply(const ContactNetwork::Chunk& chunk, const QuadMotion&
     }
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

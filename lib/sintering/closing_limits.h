@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Unilateral constraints w <= limit on the closing w of pairs, by augmented Lagrangian: the reaction max(0, lambda + s (w -
 /// limit)) of a spring s with a multiplier lambda that takes over the reaction, so that the limit is met exactly with a spring of
@@ -60,4 +60,4 @@ class ClosingLimits {
     double stiffness_ = 0.0;
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "numerics/candidates.h"
-#include "numerics/sintering.h"
+#include "sintering/candidates.h"
+#include "sintering/sintering.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 class ImplicitSintering : public SinteringMethod {
    public:
@@ -37,7 +37,7 @@ class ImplicitSintering : public SinteringMethod {
         const StepSettings& settings;
         std::optional<SinterStep> step;
 
-        void take(const Packing& packing, Candidates& candidates);
+        void take(const SinteringBody& packing, Candidates& candidates);
     };
     void solve(Problem& problem, bool second, Trial& trial);
     Trial attempt(double until, const Motion& guess);
@@ -59,4 +59,4 @@ class ImplicitSintering : public SinteringMethod {
     int attempts_ = 0, newton_ = 0, conjugate_gradients_ = 0;  // since the last accepted step
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -1,5 +1,5 @@
 // explicit_sintering.cpp: forces by pair, accelerations by particle, steps at the stability limit.
-#include "numerics/explicit_sintering.h"
+#include "sintering/explicit_sintering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "physics/materials.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -25,34 +25,34 @@ constexpr std::size_t worth_threads = 8192;
 
 ExplicitSintering::ExplicitSintering(State state, const SinteringSettings& settings) : SinteringMethod(std::move(state), settings) {
     if (kinetics_.any_rigid()) throw Error("the explicit method has no law for pairs of materials that do not diffuse");
-    const State& working = packing_.working();
+    const State& working = body_.working();
     for (std::size_t kind = 0; kind < working.materials.size() * working.materials.size(); ++kind)
         if (std::isfinite(kinetics_.neck_limit(kind)))
             throw Error("the explicit method has no law for the dihedral limit of a neck");
-    const Particles& particles = packing_.particles();
-    for (std::size_t row = 0; row < packing_.size(); ++row) {
+    const Particles& particles = body_.particles();
+    for (std::size_t row = 0; row < body_.size(); ++row) {
         const Material& material = working.materials[static_cast<std::size_t>(particles.material[row])];
         const double radius = particles.radius[row];
         mass_.push_back(settings_.mass_scaling * physics::required(material.density, material, "density") * sphere_volume(radius));
         box_inertia_ += Vec3::Constant(mass_.back() * 4.0 * radius * radius);
     }
-    velocity_.assign(packing_.size(), Vec3::Zero());
+    velocity_.assign(body_.size(), Vec3::Zero());
     acceleration_ = velocity_;
-    damping_.assign(packing_.size(), 0.0);
+    damping_.assign(body_.size(), 0.0);
 }
 
 void ExplicitSintering::list_pairs() {
-    packing_.list_pairs(0.5 * list_margin * packing_.mean_radius());
-    pairs_ = packing_.pairs();
+    body_.list_pairs(0.5 * list_margin * body_.mean_radius());
+    pairs_ = body_.pairs();
     force_.resize(pairs_.size());
-    begin_.assign(packing_.size() + 1, 0);
-    first_row_.assign(packing_.size() + 1, 0);
+    begin_.assign(body_.size() + 1, 0);
+    first_row_.assign(body_.size() + 1, 0);
     for (const Pair& pair : pairs_) {
         ++first_row_[static_cast<std::size_t>(pair.i) + 1];
         ++begin_[static_cast<std::size_t>(pair.i) + 1];
         ++begin_[static_cast<std::size_t>(pair.j) + 1];
     }
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle) {
+    for (std::size_t particle = 0; particle < body_.size(); ++particle) {
         begin_[particle + 1] += begin_[particle];
         first_row_[particle + 1] += first_row_[particle];
     }
@@ -66,15 +66,15 @@ void ExplicitSintering::list_pairs() {
 
 ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, const std::vector<double>& diffusion) const {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
-    const Vec3 vector = packing_.vector(pair);
+    const Vec3 vector = body_.vector(pair);
     const double distance = vector.norm();
-    const auto [first, second] = packing_.radii(pair);
+    const auto [first, second] = body_.radii(pair);
     const double overlap = first + second - distance;
     PairForce result;
     if (overlap < 0.0) return result;
     const Vec3 normal = vector / distance;
     const Vec3 opening = velocity_[j] - velocity_[i] + strain_rate_.cwiseProduct(vector);
-    const std::size_t kind = kinetics_.row(packing_.particles(), pair);
+    const std::size_t kind = kinetics_.row(body_.particles(), pair);
     const double reduced = physics::reduced_radius(first, second);
     result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * overlap * overlap / diffusion[kind];
     const double shear = physics::tangential_viscosity(settings_.constants, overlap, reduced) / diffusion[kind];
@@ -90,18 +90,18 @@ ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, con
 ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<double>& diffusion) {
     // Sums go by particles: pairs in the list that do not touch add zeros, so the result does not depend on how far the list
     // reaches.
-    const std::size_t chunks = (packing_.size() + chunk - 1) / chunk;
+    const std::size_t chunks = (body_.size() + chunk - 1) / chunk;
     std::vector<BoxForce> parts(chunks);
-#pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
+#pragma omp parallel for schedule(static) if (body_.size() >= worth_threads)
     for (std::size_t part = 0; part < chunks; ++part)
-        for (std::size_t row = first_row_[part * chunk]; row < first_row_[std::min(packing_.size(), (part + 1) * chunk)]; ++row) {
+        for (std::size_t row = first_row_[part * chunk]; row < first_row_[std::min(body_.size(), (part + 1) * chunk)]; ++row) {
             force_[row] = pair_force(pairs_[row], diffusion);
-            const Vec3 vector = packing_.vector(pairs_[row]);
+            const Vec3 vector = body_.vector(pairs_[row]);
             parts[part].force += force_[row].force.cwiseProduct(vector);
             parts[part].viscosity += force_[row].viscosity * vector.cwiseAbs2();
         }
-#pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle) {
+#pragma omp parallel for schedule(static) if (body_.size() >= worth_threads)
+    for (std::size_t particle = 0; particle < body_.size(); ++particle) {
         Vec3 sum = Vec3::Zero();
         double viscosity = 0.0;
         for (std::size_t place = begin_[particle]; place < begin_[particle + 1]; ++place) {
@@ -124,14 +124,14 @@ ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<dou
 double ExplicitSintering::stable_step(const BoxForce& box) const {
     // dv/dt = -D v is stable for steps below 2/D; D of a network is at most twice the largest sum of viscosities over mass.
     double fastest = 0.0, speed = 0.0, push = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : fastest, speed, push) if (packing_.size() >= worth_threads)
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle) {
+#pragma omp parallel for schedule(static) reduction(max : fastest, speed, push) if (body_.size() >= worth_threads)
+    for (std::size_t particle = 0; particle < body_.size(); ++particle) {
         fastest = std::max(fastest, 2.0 * damping_[particle]);
         speed = std::max(speed, velocity_[particle].norm());
         push = std::max(push, acceleration_[particle].norm());
     }
     for (int axis = 0; axis < 3; ++axis) fastest = std::max(fastest, box.viscosity[axis] / box_inertia_[axis]);
-    const double length = largest_closing * packing_.mean_radius();
+    const double length = largest_closing * body_.mean_radius();
     double step = fastest > 0.0 ? stability_share * 2.0 / fastest : std::numeric_limits<double>::infinity();
     if (speed > 0.0) step = std::min(step, 0.5 * length / speed);
     if (push > 0.0) step = std::min(step, std::sqrt(length / push));
@@ -139,19 +139,19 @@ double ExplicitSintering::stable_step(const BoxForce& box) const {
 }
 
 void ExplicitSintering::accelerate(const BoxForce& box, double step) {
-#pragma omp parallel for schedule(static) if (packing_.size() >= worth_threads)
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle) velocity_[particle] += step * acceleration_[particle];
-    const double volume = packing_.box().volume();
+#pragma omp parallel for schedule(static) if (body_.size() >= worth_threads)
+    for (std::size_t particle = 0; particle < body_.size(); ++particle) velocity_[particle] += step * acceleration_[particle];
+    const double volume = body_.box().volume();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
-        if (!packing_.box().periodic[axis] || settings_.fixed[axis]) continue;
+        if (!body_.box().periodic[axis] || settings_.fixed[axis]) continue;
         strain_rate_[k] -= step * (box.force[k] + settings_.pressure[k] * volume) / box_inertia_[k];
     }
 }
 
 Motion ExplicitSintering::motion_over(double step) const {
-    Motion motion(packing_.size());
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle)
+    Motion motion(body_.size());
+    for (std::size_t particle = 0; particle < body_.size(); ++particle)
         Eigen::Map<Vec3>(&motion.displacement[3 * particle]) = step * velocity_[particle];
     motion.strain = step * strain_rate_;
     return motion;
@@ -160,7 +160,7 @@ Motion ExplicitSintering::motion_over(double step) const {
 double ExplicitSintering::shortened(double step, double log_change) const {
     double low = 0.0, high = step;  // the density at the end of the step grows with its length
     for (int halving = 0; halving < most_bisections; ++halving) {
-        const double middle = 0.5 * (low + high), miss = packing_.log_density_change(motion_over(middle)) - log_change;
+        const double middle = 0.5 * (low + high), miss = body_.log_density_change(motion_over(middle)) - log_change;
         if (std::abs(miss) < landing_accuracy) return middle;
         (miss > 0.0 ? high : low) = middle;
     }
@@ -168,59 +168,59 @@ double ExplicitSintering::shortened(double step, double log_change) const {
 }
 
 void ExplicitSintering::step_once(double latest_time, double highest_density, StepRecord& record) {
-    if (packing_.least_room() < largest_closing * packing_.mean_radius()) list_pairs();
-    const double now = packing_.time();
+    if (body_.least_room() < largest_closing * body_.mean_radius()) list_pairs();
+    const double now = body_.time();
     const BoxForce box = find_forces(kinetics_.diffusion_at(kinetics_.schedule().temperature(now)));
     double step = stable_step(box);
     const bool on_time = step >= latest_time - now;
     if (on_time) step = latest_time - now;
     if (!std::isfinite(step)) throw Error("no contact drives any motion, so no density can be waited for");
     accelerate(box, step);
-    const double wanted_change = std::log(highest_density / packing_.density());
+    const double wanted_change = std::log(highest_density / body_.density());
     Motion motion = motion_over(step);
     double until = on_time ? latest_time : now + step;
-    if (packing_.log_density_change(motion) > wanted_change) {
+    if (body_.log_density_change(motion) > wanted_change) {
         step = shortened(step, wanted_change);
         motion = motion_over(step);
         until = now + step;
     }
-    record.stress = box.force / packing_.box().volume();
-    packing_.apply(motion, until, kinetics_.schedule().temperature(until));
+    record.stress = box.force / body_.box().volume();
+    body_.apply(motion, until, kinetics_.schedule().temperature(until));
 }
 
 StepRecord ExplicitSintering::advance(double latest_time, double highest_density) {
     if (pairs_.empty()) list_pairs();
-    const double start = packing_.time(), density = packing_.density();
+    const double start = body_.time(), density = body_.density();
     StepRecord record;
     for (int step = 0; step < most_steps; ++step) {
         step_once(latest_time, highest_density, record);
         ++record.attempts;
         const bool reached =
-            packing_.time() >= latest_time || packing_.density() >= highest_density * (1.0 - 2.0 * landing_accuracy);
-        if (reached || std::abs(std::log(packing_.density() / density)) > record_change) break;
+            body_.time() >= latest_time || body_.density() >= highest_density * (1.0 - 2.0 * landing_accuracy);
+        if (reached || std::abs(std::log(body_.density() / density)) > record_change) break;
     }
     steps_ += static_cast<std::size_t>(record.attempts);
-    record.time = packing_.time();
+    record.time = body_.time();
     record.duration = record.time - start;
-    record.temperature = *packing_.working().temperature;
-    record.relative_density = packing_.density();
-    record.strain = packing_.strain();
-    record.contacts = packing_.statistics();
+    record.temperature = *body_.working().temperature;
+    record.relative_density = body_.density();
+    record.strain = body_.strain();
+    record.contacts = body_.statistics();
     return record;
 }
 
 Json ExplicitSintering::numbers() const { return {{"strain_rate", triple(strain_rate_)}}; }
 
 std::vector<NamedArray> ExplicitSintering::arrays() const {
-    return {{"velocity", {{packing_.size(), 3}, motion_over(1.0).displacement}}};
+    return {{"velocity", {{body_.size(), 3}, motion_over(1.0).displacement}}};
 }
 
 void ExplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
-    const std::vector<double> velocity = column_of(arrays, "velocity", packing_.size());
-    for (std::size_t particle = 0; particle < packing_.size(); ++particle)
+    const std::vector<double> velocity = column_of(arrays, "velocity", body_.size());
+    for (std::size_t particle = 0; particle < body_.size(); ++particle)
         velocity_[particle] = Eigen::Map<const Vec3>(&velocity[3 * particle]);
     strain_rate_ = triple_from(numbers.at("strain_rate"));
     list_pairs();
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

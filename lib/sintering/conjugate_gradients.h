@@ -1,9 +1,9 @@
 // conjugate_gradients.h: preconditioned conjugate gradients for the stiffness of a contact network with the box's strains.
 #pragma once
 
-#include "numerics/preconditioner.h"
+#include "sintering/preconditioner.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 struct LinearSolve {
     int iterations = 0;
@@ -53,4 +53,4 @@ void add(const ContactNetwork& network, double factor, const Motion& x, Motion& 
 template <typename AnyMotion>
 void project(AnyMotion& motion, const Eigen::Matrix3d& allowed) { motion.strain = allowed * motion.strain; }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -2,9 +2,9 @@
 // method.
 #pragma once
 
-#include "numerics/sintering.h"
+#include "sintering/sintering.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Central differences of S m dv/dt = sum of contact forces (Eq. 1), with velocities half a step behind the positions. The true
 /// inertia (S = 1) is of no account, and the time step would be 1e-19 s; a mass scaled by S = 1e20 makes steps affordable and the
@@ -52,4 +52,4 @@ class ExplicitSintering : public SinteringMethod {
     Vec3 strain_rate_ = Vec3::Zero();   // 1/s
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "numerics/contact_network.h"
-#include "numerics/quad.h"
+#include "sintering/contact_network.h"
+#include "sintering/quad.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// A motion, or forces, with the displacements in single precision; spare places are zero.
 struct QuadMotion {
@@ -68,4 +68,4 @@ class Stiffness {
     std::vector<float> tangential_;  // kt
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -1,5 +1,5 @@
 // sinter_step.cpp: Newton with a line search on the step's convex function, first at the start geometry, then at the midpoint.
-#include "numerics/sinter_step.h"
+#include "sintering/sinter_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "core/contacts.h"
 #include "physics/sinter_contact.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -254,4 +254,4 @@ StepReport SinterStep::second_order(const Motion& first, Motion& motion) {
     return report;
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -1,9 +1,9 @@
 // contact_network.cpp: cutting the contacts into chunks, by which of their particles each one owns.
-#include "numerics/contact_network.h"
+#include "sintering/contact_network.h"
 
 #include <array>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -61,4 +61,4 @@ ContactNetwork::ContactNetwork(const Box& box, std::span<const Vec3> position, s
     });
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -5,11 +5,11 @@
 #include <array>
 
 #include "core/contacts.h"
-#include "numerics/kinetics.h"
-#include "numerics/packing.h"
+#include "sintering/kinetics.h"
+#include "sintering/sintering_body.h"
 #include "physics/sinter_contact.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 struct SinteringSettings {
     physics::Schedule schedule = physics::Schedule::hold(1473.15);
@@ -53,15 +53,15 @@ class SinteringMethod {
     /// Throws Error where the checkpoint has another number of particles or lacks something.
     void restore(const State& checkpoint);
 
-    const Packing& packing() const { return packing_; }
+    const SinteringBody& packing() const { return body_; }
     std::size_t steps() const { return steps_; }
-    double time() const { return packing_.time(); }
-    double relative_density() const { return packing_.density(); }
-    State state() const { return packing_.state(); }
+    double time() const { return body_.time(); }
+    double relative_density() const { return body_.density(); }
+    State state() const { return body_.state(); }
 
    protected:
     SinteringMethod(State state, const SinteringSettings& settings)
-        : settings_(settings), packing_(std::move(state), settings.faces), kinetics_(packing_.working(), settings.schedule) {}
+        : settings_(settings), body_(std::move(state), settings.faces), kinetics_(body_.working(), settings.schedule) {}
 
     /// Numbers and arrays (a row a particle) of the method itself, and the way back.
     virtual Json numbers() const = 0;
@@ -69,7 +69,7 @@ class SinteringMethod {
     virtual void take_up(const Json& numbers, const std::vector<NamedArray>& arrays) = 0;
 
     SinteringSettings settings_;
-    Packing packing_;
+    SinteringBody body_;
     Kinetics kinetics_;
     std::size_t steps_ = 0;
 };
@@ -83,4 +83,4 @@ inline Vec3 triple_from(const Json& json) {
 /// The f8 array of three columns and the given number of rows; throws Error where there is none.
 std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::string& name, std::size_t rows);
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

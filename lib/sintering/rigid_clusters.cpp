@@ -1,12 +1,12 @@
 // rigid_clusters.cpp: union of sticking particles, and pairs and motions seen from their nodes.
-#include "numerics/rigid_clusters.h"
+#include "sintering/rigid_clusters.h"
 
 #include <string>
 #include <utility>
 
 #include "physics/sinter_contact.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -18,7 +18,7 @@ Vec3 shift_of(const Box& box, const PeriodicClusters::Offset& image) {
 
 }  // namespace
 
-bool sticks(const Packing& packing, const Kinetics& kinetics, const Pair& pair) {
+bool sticks(const SinteringBody& packing, const Kinetics& kinetics, const Pair& pair) {
     if (!kinetics.any_rigid() || !kinetics.rigid(kinetics.row(packing.particles(), pair))) return false;
     const auto [first, second] = packing.radii(pair);
     return packing.vector(pair).norm() - first - second < sticking_gap * physics::reduced_radius(first, second);
@@ -88,4 +88,4 @@ Motion RigidClusters::particles(const Motion& nodes, std::span<const Vec3> posit
     return motion;
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

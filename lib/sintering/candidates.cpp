@@ -1,12 +1,12 @@
 // candidates.cpp: choice by expected motion, the data of each pair, and the check that none was left out.
-#include "numerics/candidates.h"
+#include "sintering/candidates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -17,23 +17,23 @@ constexpr double harmless_overlap = 0.05;  // of the mean closing of contacts in
 }  // namespace
 
 double Candidates::overlap(const Pair& pair) const {
-    const auto [first, second] = packing_.radii(pair);
-    return first + second - packing_.vector(pair).norm();
+    const auto [first, second] = body_.radii(pair);
+    return first + second - body_.vector(pair).norm();
 }
 
 double Candidates::end_overlap(const Pair& pair, const Motion& motion) const {
-    const auto [first, second] = packing_.radii(pair);
-    const Vec3 vector = packing_.vector(pair);
+    const auto [first, second] = body_.radii(pair);
+    const Vec3 vector = body_.vector(pair);
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pair.i)]);
     const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pair.j)]);
     return first + second - (vector + b - a + motion.strain.cwiseProduct(vector)).norm();
 }
 
 PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diffusion, double unit) const {
-    const auto [first, second] = packing_.radii(pair);
-    const std::size_t kind = kinetics_.row(packing_.particles(), pair);
+    const auto [first, second] = body_.radii(pair);
+    const std::size_t kind = kinetics_.row(body_.particles(), pair);
     PairStep step{};
-    step.vector = step.lever = packing_.vector(pair);
+    step.vector = step.lever = body_.vector(pair);
     step.distance = step.vector.norm();
     step.overlap = first + second - step.distance;
     step.reduced_radius = physics::reduced_radius(first, second);
@@ -51,21 +51,21 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
 
 void Candidates::choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion) {
     // Forces in a unit that makes stiffness a plain number near one, whatever the sizes, times and temperatures.
-    const double radius = packing_.mean_radius();
+    const double radius = body_.mean_radius();
     unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
             (physics::normal_viscosity_factor(constants_, 0.5 * radius) * radius * radius);
-    lists_ = packing_.lists();
+    lists_ = body_.lists();
     const double reach = least_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
     const auto expected = [&](const Pair& pair) {
         return &guess == &other ? end_overlap(pair, guess) : std::max(end_overlap(pair, guess), end_overlap(pair, other));
     };
-    const std::vector<Pair>& list = packing_.pairs();
+    const std::vector<Pair>& list = body_.pairs();
     std::vector<std::uint8_t> kind(list.size());  // 0 out, 1 apart, 2 touching, 3 sticking
 #pragma omp parallel for schedule(static)
     for (std::size_t row = 0; row < list.size(); ++row) {
         const Pair& pair = list[row];
         const double start = overlap(pair);
-        if (sticks(packing_, kinetics_, pair))
+        if (sticks(body_, kinetics_, pair))
             kind[row] = 3;
         else if (start >= 0.0)
             kind[row] = 2;
@@ -85,15 +85,15 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
 }
 
 bool Candidates::complete(const Motion& motion) const {
-    const double harmless = harmless_overlap * 2.0 * packing_.mean_radius() * motion.strain.cwiseAbs().maxCoeff();
+    const double harmless = harmless_overlap * 2.0 * body_.mean_radius() * motion.strain.cwiseAbs().maxCoeff();
     const auto touching_among = [&](const std::vector<Pair>& pairs) {
         std::size_t count = 0;
 #pragma omp parallel for schedule(static) reduction(+ : count)
         for (const Pair& pair : pairs) count += end_overlap(pair, motion) > harmless;
         return count;
     };
-    if (lists_ == packing_.lists()) return touching_among(left_out_) == 0;
-    return touching_among(packing_.pairs()) == touching_among(chosen_);  // a new list holds the chosen as well
+    if (lists_ == body_.lists()) return touching_among(left_out_) == 0;
+    return touching_among(body_.pairs()) == touching_among(chosen_);  // a new list holds the chosen as well
 }
 
 void Candidates::turn_to_nodes(const RigidClusters& clusters) {
@@ -109,7 +109,7 @@ void Candidates::turn_to_nodes(const RigidClusters& clusters) {
         if (RigidClusters::inert(seen)) continue;
         PairStep step = steps_[row];
         if (turned) step.vector = -step.vector;
-        step.lever = pair_vector(packing_.box(), clusters.places(), seen);
+        step.lever = pair_vector(body_.box(), clusters.places(), seen);
         rows.push_back({seen, step});
     }
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
@@ -123,4 +123,4 @@ void Candidates::turn_to_nodes(const RigidClusters& clusters) {
     }
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

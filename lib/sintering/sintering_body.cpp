@@ -1,5 +1,5 @@
-// packing.cpp: memory order, the list of pairs with its margin, and the body's extent along free faces.
-#include "numerics/packing.h"
+// sintering_body.cpp: memory order, the list of pairs with its margin, and the body's extent along free faces.
+#include "sintering/sintering_body.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "core/spatial_order.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr std::size_t worth_threads = 8192;  // particles from which a pass take
 
 }  // namespace
 
-Packing::Packing(State state, Faces faces) : state_(std::move(state)) {
+SinteringBody::SinteringBody(State state, Faces faces) : state_(std::move(state)) {
     Particles& particles = state_.particles;
     if (particles.size() == 0) throw Error("the state has no particles");
     if (state_.bonds) throw Error("the state has bonds; sintering takes a packing without them");
@@ -34,12 +34,12 @@ Packing::Packing(State state, Faces faces) : state_(std::move(state)) {
     list_pairs(list_room * mean_radius_);
 }
 
-void Packing::list_pairs(double room) {
+void SinteringBody::list_pairs(double room) {
     room_.assign(size(), room);
     find_pairs();
 }
 
-void Packing::find_pairs() {
+void SinteringBody::find_pairs() {
     const Particles& particles = state_.particles;
     std::vector<double> reach = particles.radius;
     for (std::size_t row = 0; row < size(); ++row) reach[row] += room_[row];
@@ -55,12 +55,12 @@ void Packing::find_pairs() {
 }
 
 /// Bound of what a particle's motion takes off the gaps to particles beyond its room, m: they close by no more than both travel.
-double Packing::travel(std::size_t row, const Motion& motion) const {
+double SinteringBody::travel(std::size_t row, const Motion& motion) const {
     return Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm() +
            motion.strain.cwiseAbs().maxCoeff() * (state_.particles.radius[row] + room_[row]);
 }
 
-void Packing::cover(const Motion& motion, double factor) {
+void SinteringBody::cover(const Motion& motion, double factor) {
     bool covered = true;
 #pragma omp parallel for schedule(static) reduction(&& : covered) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row) covered = covered && factor * travel(row, motion) <= room_[row];
@@ -70,7 +70,7 @@ void Packing::cover(const Motion& motion, double factor) {
     find_pairs();
 }
 
-double Packing::closing_bound(const Motion& motion) const {
+double SinteringBody::closing_bound(const Motion& motion) const {
     double largest = 0.0;
 #pragma omp parallel for schedule(static) reduction(max : largest) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row)
@@ -78,7 +78,7 @@ double Packing::closing_bound(const Motion& motion) const {
     return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * 2.0 * largest_radius_;
 }
 
-Vec3 Packing::body_stretch(const Motion& motion) const {
+Vec3 SinteringBody::body_stretch(const Motion& motion) const {
     const Particles& particles = state_.particles;
     const auto& periodic = state_.box.periodic;
     Vec3 stretch = Vec3::Ones();
@@ -104,12 +104,12 @@ Vec3 Packing::body_stretch(const Motion& motion) const {
     return stretch;
 }
 
-double Packing::log_density_change(const Motion& motion) const {
+double SinteringBody::log_density_change(const Motion& motion) const {
     return -std::log1p(motion.strain[0]) - std::log1p(motion.strain[1]) - std::log1p(motion.strain[2]) -
            body_stretch(motion).array().log().sum();
 }
 
-void Packing::apply(const Motion& motion, double until, double temperature) {
+void SinteringBody::apply(const Motion& motion, double until, double temperature) {
     Box& box = state_.box;
     const Vec3 body = body_stretch(motion);
     const Vec3 stretch = Vec3::Ones() + motion.strain;
@@ -132,7 +132,7 @@ void Packing::apply(const Motion& motion, double until, double temperature) {
     least_room_ = least;
 }
 
-State Packing::state() const {
+State SinteringBody::state() const {
     State result = state_;
     std::vector<std::int32_t> back(order_.size());
     for (std::size_t row = 0; row < order_.size(); ++row)
@@ -142,7 +142,7 @@ State Packing::state() const {
     return result;
 }
 
-void Packing::restore(const Box& box, std::vector<Vec3> position, double time, double temperature, const Vec3& strain) {
+void SinteringBody::restore(const Box& box, std::vector<Vec3> position, double time, double temperature, const Vec3& strain) {
     state_.box = box;
     state_.particles.position = std::move(position);
     state_.time = time;
@@ -152,4 +152,4 @@ void Packing::restore(const Box& box, std::vector<Vec3> position, double time, d
     list_pairs(list_room * mean_radius_);
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "numerics/closing_limits.h"
-#include "numerics/conjugate_gradients.h"
-#include "numerics/contact_network.h"
+#include "sintering/closing_limits.h"
+#include "sintering/conjugate_gradients.h"
+#include "sintering/contact_network.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// What one pair brings into a step. Geometry is that at the start of the step. A pair that does not diffuse has neither force nor
 /// viscosity; it can only reach its limit. Forces may be in any unit, the same for all: only their ratios move anything.
@@ -93,4 +93,4 @@ class SinterStep {
     double work_ = 0.0;                    // of the driving forces in the last call of forces()
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

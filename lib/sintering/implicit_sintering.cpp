@@ -1,5 +1,5 @@
 // implicit_sintering.cpp: the loop around the implicit step: candidates, trial steps, step control, landing.
-#include "numerics/implicit_sintering.h"
+#include "sintering/implicit_sintering.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -34,9 +34,9 @@ constexpr int most_rejections = 20;         // of one step
 }  // namespace
 
 ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& settings)
-    : SinteringMethod(std::move(state), settings), candidates_(packing_, kinetics_, settings_.constants) {
+    : SinteringMethod(std::move(state), settings), candidates_(body_, kinetics_, settings_.constants) {
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !packing_.box().periodic[axis]))
+        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !body_.box().periodic[axis]))
             throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
     next_duration_ = first_duration();
 }
@@ -45,14 +45,14 @@ double ImplicitSintering::first_duration() {
     const std::vector<double> diffusion = kinetics_.diffusion_at(kinetics_.schedule().highest());
     double shortest = std::numeric_limits<double>::infinity(), overlap = 0.0;
     std::size_t contacts = 0;
-    for (const Pair& pair : packing_.pairs()) {
+    for (const Pair& pair : body_.pairs()) {
         const PairStep step = candidates_.pair_step(pair, diffusion, 1.0);
         if (step.overlap < 0.0) continue;
         overlap += step.overlap / step.reduced_radius;
         ++contacts;
     }
     if (contacts > 0) overlap /= static_cast<double>(contacts);
-    for (const Pair& pair : packing_.pairs()) {  // time in which a pair of mean overlap closes by first_closing
+    for (const Pair& pair : body_.pairs()) {  // time in which a pair of mean overlap closes by first_closing
         const PairStep step = candidates_.pair_step(pair, diffusion, 1.0);
         const double start = overlap * step.reduced_radius, end = start + 2.0 * first_closing * step.reduced_radius;
         if (step.cubic > 0.0)
@@ -64,11 +64,11 @@ double ImplicitSintering::first_duration() {
 Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& locked) const {
     // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that
     // contacts do reach through, so that loose clusters move with the flow of the whole.
-    const std::array<bool, 3> percolates = percolating_axes(packing_.size(), candidates_.touching());
+    const std::array<bool, 3> percolates = percolating_axes(body_.size(), candidates_.touching());
     std::vector<Vec3> basis;
     Vec3 followers = Vec3::Zero();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!packing_.box().periodic[axis] || settings_.fixed[axis] || locked[axis]) continue;
+        if (!body_.box().periodic[axis] || settings_.fixed[axis] || locked[axis]) continue;
         const Vec3 along = Vec3::Unit(static_cast<Eigen::Index>(axis));
         if (percolates[axis])
             basis.push_back(along);
@@ -83,14 +83,14 @@ Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& loc
 }
 
 Motion ImplicitSintering::scaled(const Motion& motion, double factor) const {
-    Motion guess(packing_.size());
+    Motion guess(body_.size());
     if (motion.displacement.size() != guess.displacement.size()) return guess;
     for (std::size_t k = 0; k < guess.displacement.size(); ++k) guess.displacement[k] = factor * motion.displacement[k];
     guess.strain = factor * motion.strain;
     return guess;
 }
 
-void ImplicitSintering::Problem::take(const Packing& packing, Candidates& candidates) {
+void ImplicitSintering::Problem::take(const SinteringBody& packing, Candidates& candidates) {
     candidates.turn_to_nodes(clusters);
     step.emplace(packing.box(), clusters.places(), candidates.pairs(), candidates.steps(), settings);
 }
@@ -105,29 +105,29 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
         trial.converged = trial.converged && trial.report.converged;
         newton_ += trial.report.newton;
         conjugate_gradients_ += trial.report.conjugate_gradients;
-        motion = problem.clusters.particles(nodes, packing_.particles().position);
-        trial.leapt = packing_.closing_bound(motion) > largest_closing * packing_.mean_radius();
+        motion = problem.clusters.particles(nodes, body_.particles().position);
+        trial.leapt = body_.closing_bound(motion) > largest_closing * body_.mean_radius();
         if (trial.leapt) return;  // no list of pairs is made for such a leap: the step is too long
-        packing_.cover(motion);
+        body_.cover(motion);
         if (candidates_.complete(motion)) return;
         candidates_.choose(trial.first_order, trial.motion, problem.diffusion);
-        problem.take(packing_, candidates_);
+        problem.take(body_, candidates_);
     }
 }
 
 ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& guess) {
-    packing_.cover(guess, guess_margin);
+    body_.cover(guess, guess_margin);
     ++attempts_;
-    const std::vector<double> diffusion = kinetics_.diffusion_over(packing_.time(), until);
+    const std::vector<double> diffusion = kinetics_.diffusion_over(body_.time(), until);
     candidates_.choose(guess, guess, diffusion);
-    const RigidClusters clusters(packing_.box(), packing_.particles().position, candidates_.sticking());
-    const double closely = settings_.solver_tolerance * (packing_.size() < small_packing ? small_share : 1.0);
+    const RigidClusters clusters(body_.box(), body_.particles().position, candidates_.sticking());
+    const double closely = settings_.solver_tolerance * (body_.size() < small_packing ? small_share : 1.0);
     const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_share : alone_share),
                                 .second_tolerance = closely};
     Problem problem{diffusion, clusters, settings, std::nullopt};
-    problem.take(packing_, candidates_);
+    problem.take(body_, candidates_);
     Trial trial;
     trial.until = until;
     trial.motion = trial.first_order = guess;
@@ -136,12 +136,12 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     if (!trial.leapt) solve(problem, true, trial);
     if (trial.leapt) return trial;
     for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
-        trial.report.stress[static_cast<Eigen::Index>(axis)] *= packing_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
-    trial.log_density = packing_.log_density_change(trial.motion);
-    trial.difference = std::abs(trial.log_density - packing_.log_density_change(trial.first_order));
+        trial.report.stress[static_cast<Eigen::Index>(axis)] *= body_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
+    trial.log_density = body_.log_density_change(trial.motion);
+    trial.difference = std::abs(trial.log_density - body_.log_density_change(trial.first_order));
     if (settings_.second_order) return trial;
     trial.motion = trial.first_order;
-    trial.log_density = packing_.log_density_change(trial.motion);
+    trial.log_density = body_.log_density_change(trial.motion);
     return trial;
 }
 
@@ -152,7 +152,7 @@ ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& d
     double before = duration, before_change = beyond.log_density, here = parabola(log_change, duration, beyond.log_density);
     Trial trial = beyond;
     for (int iteration = 0; iteration < most_landings; ++iteration) {
-        trial = attempt(kinetics_.after(packing_.time(), here), scaled(trial.motion, log_change / trial.log_density));
+        trial = attempt(kinetics_.after(body_.time(), here), scaled(trial.motion, log_change / trial.log_density));
         const double miss = trial.log_density - log_change, rate = (trial.log_density - before_change) / (here - before);
         const double next = here - miss / rate;
         (miss > 0.0 ? high : low) = here;
@@ -162,10 +162,10 @@ ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& d
     }
     for (int pass = 0; pass < 3; ++pass) {  // the logarithm of the density is nearly linear in the motion
         trial.motion = scaled(trial.motion, log_change / trial.log_density);
-        trial.log_density = packing_.log_density_change(trial.motion);
+        trial.log_density = body_.log_density_change(trial.motion);
     }
     duration = here;
-    trial.until = kinetics_.after(packing_.time(), here);
+    trial.until = kinetics_.after(body_.time(), here);
     return trial;
 }
 
@@ -191,30 +191,30 @@ double ImplicitSintering::room_for(const Trial& trial) const {
 }
 
 ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time) {
-    const double room = kinetics_.equivalent(packing_.time(), latest_time);
+    const double room = kinetics_.equivalent(body_.time(), latest_time);
     duration = std::min(next_duration_, room);
     const bool ends_on_time = duration < next_duration_ || room == next_duration_;
-    double until = ends_on_time ? latest_time : kinetics_.after(packing_.time(), duration);
+    double until = ends_on_time ? latest_time : kinetics_.after(body_.time(), duration);
     const double slowing = rate_before_ > 0.0 && last_rate_ > 0.0 ? std::clamp(last_rate_ / rate_before_, 0.5, 1.0) : 1.0;
     Motion guess = scaled(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
     Trial trial;
     for (int rejected = 0;; ++rejected) {
-        if (!(until > packing_.time()))
-            throw Error("no step is short enough to converge at " + std::to_string(packing_.time()) + " s");
+        if (!(until > body_.time()))
+            throw Error("no step is short enough to converge at " + std::to_string(body_.time()) + " s");
         trial = attempt(until, guess);
         if (!trial.leapt && room_for(trial) >= accepted_room && std::abs(trial.log_density) <= largest_log_step &&
             trial.converged)
             break;
         if (rejected == most_rejections) {
             if (trial.leapt)
-                throw Error("particles leap by more than a radius however short the step is at " + std::to_string(packing_.time()) +
+                throw Error("particles leap by more than a radius however short the step is at " + std::to_string(body_.time()) +
                             " s");
             break;  // the record says that it did not converge
         }
         const double factor = trial.leapt ? smallest_factor : std::clamp(0.8 * room_for(trial), smallest_factor, 0.7);
-        guess = trial.leapt ? Motion(packing_.size()) : scaled(trial.motion, factor);
+        guess = trial.leapt ? Motion(body_.size()) : scaled(trial.motion, factor);
         duration *= factor;
-        until = kinetics_.after(packing_.time(), duration);
+        until = kinetics_.after(body_.time(), duration);
     }
     const double growth = std::clamp(0.9 * room_for(trial), 0.5, 2.5);
     next_duration_ = ends_on_time && until == latest_time ? std::max(next_duration_, duration * growth) : duration * growth;
@@ -224,20 +224,20 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
 }
 
 StepRecord ImplicitSintering::advance(double latest_time, double highest_density) {
-    const double wanted_change = std::log(highest_density / packing_.density());
-    const double start = packing_.time();
+    const double wanted_change = std::log(highest_density / body_.density());
+    const double start = body_.time();
     double duration = 0.0;
     Trial trial;
     if (!(kinetics_.equivalent(start, latest_time) > 0.0)) {  // too cold for any motion
         trial.until = latest_time;
-        trial.motion = trial.first_order = Motion(packing_.size());
+        trial.motion = trial.first_order = Motion(body_.size());
     } else {
         trial = accepted_attempt(duration, latest_time);
         if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
     }
     idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
     if (idle_steps_ > most_idle_steps && std::isfinite(highest_density))
-        throw Error("the density stays at " + std::to_string(packing_.density()) +
+        throw Error("the density stays at " + std::to_string(body_.density()) +
                     "; no contact is left that densifies the box, so " + std::to_string(highest_density) + " cannot be reached");
     StepRecord record = finish(trial, duration);
     record.duration = record.time - start;
@@ -245,7 +245,7 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
 }
 
 StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
-    packing_.apply(trial.motion, trial.until, kinetics_.schedule().temperature(trial.until));
+    body_.apply(trial.motion, trial.until, kinetics_.schedule().temperature(trial.until));
     ++steps_;
     if (duration > 0.0) {
         last_motion_ = trial.motion;
@@ -254,12 +254,12 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
     }
     error_ += step_error(trial);
     StepRecord record;
-    record.time = packing_.time();
-    record.temperature = *packing_.working().temperature;
-    record.relative_density = packing_.density();
-    record.strain = packing_.strain();
+    record.time = body_.time();
+    record.temperature = *body_.working().temperature;
+    record.relative_density = body_.density();
+    record.strain = body_.strain();
     record.stress = trial.report.stress;
-    record.contacts = packing_.statistics();
+    record.contacts = body_.statistics();
     record.error = error_;
     record.attempts = std::exchange(attempts_, 0);
     record.newton = std::exchange(newton_, 0);
@@ -275,7 +275,7 @@ Json ImplicitSintering::numbers() const {
 }
 
 std::vector<NamedArray> ImplicitSintering::arrays() const {
-    return {{"last_motion", {{packing_.size(), 3}, scaled(last_motion_, 1.0).displacement}}};
+    return {{"last_motion", {{body_.size(), 3}, scaled(last_motion_, 1.0).displacement}}};
 }
 
 void ImplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
@@ -286,7 +286,7 @@ void ImplicitSintering::take_up(const Json& numbers, const std::vector<NamedArra
     error_ = numbers.at("density_error");
     idle_steps_ = numbers.at("idle_steps");
     last_motion_.strain = triple_from(numbers.at("last_strain"));
-    last_motion_.displacement = column_of(arrays, "last_motion", packing_.size());
+    last_motion_.displacement = column_of(arrays, "last_motion", body_.size());
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

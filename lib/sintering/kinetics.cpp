@@ -1,5 +1,5 @@
 // kinetics.cpp: tables over pairs of materials, and equivalent time and its inverse.
-#include "numerics/kinetics.h"
+#include "sintering/kinetics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "physics/diffusion.h"
 #include "physics/materials.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -106,4 +106,4 @@ double Kinetics::after(double from, double wanted) const {
     return rate > 0.0 ? low + left / rate : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

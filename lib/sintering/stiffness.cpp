@@ -1,9 +1,9 @@
 // stiffness.cpp: the product of the stiffness with a motion, chunk by chunk.
-#include "numerics/stiffness.h"
+#include "sintering/stiffness.h"
 
 #include <algorithm>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 Stiffness::Stiffness(const ContactNetwork& network)
     : network_(network), position_(network.particles()), direction_(network.first.size()), tangential_(network.first.size()) {
@@ -74,4 +74,4 @@ Vec3 Stiffness::multiply(std::size_t index, const Vec3& strain, const std::vecto
     return crossing + work.vector();
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -1,10 +1,10 @@
 // conjugate_gradients.cpp: the iteration; three passes over the particles each, all in fixed chunks.
-#include "numerics/conjugate_gradients.h"
+#include "sintering/conjugate_gradients.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -121,4 +121,4 @@ LinearSolve ConjugateGradients::solve(const Stiffness& stiffness, const Precondi
     return report;
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -13,7 +13,7 @@
 
 #include "core/neighbours.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Displacements and strains, or forces and the work conjugate to the strains.
 struct Motion {
@@ -166,4 +166,4 @@ void ContactNetwork::gather(const Motion& motion, Motion& forces, std::vector<do
     for (const Vec3& part : work) forces.strain += part;
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

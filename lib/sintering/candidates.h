@@ -3,19 +3,19 @@
 
 #include <vector>
 
-#include "numerics/kinetics.h"
-#include "numerics/packing.h"
-#include "numerics/rigid_clusters.h"
-#include "numerics/sinter_step.h"
+#include "sintering/kinetics.h"
+#include "sintering/sintering_body.h"
+#include "sintering/rigid_clusters.h"
+#include "sintering/sinter_step.h"
 #include "physics/sinter_contact.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 class Candidates {
    public:
     /// Refers to packing and kinetics as long as it lives.
-    Candidates(const Packing& packing, const Kinetics& kinetics, const physics::ContactConstants& constants)
-        : packing_(packing), kinetics_(kinetics), constants_(constants) {}
+    Candidates(const SinteringBody& packing, const Kinetics& kinetics, const physics::ContactConstants& constants)
+        : body_(packing), kinetics_(kinetics), constants_(constants) {}
 
     /// Chooses from the packing's list by two motions that the step may turn out to make.
     /// diffusion: integral of Delta over the step for each pair of materials, m5/N.
@@ -41,7 +41,7 @@ class Candidates {
     double overlap(const Pair& pair) const;                               // m
     double end_overlap(const Pair& pair, const Motion& motion) const;     // m, after the motion
 
-    const Packing& packing_;
+    const SinteringBody& body_;
     const Kinetics& kinetics_;
     physics::ContactConstants constants_;
     std::vector<Pair> pairs_, chosen_, left_out_, touching_, sticking_;
@@ -50,4 +50,4 @@ class Candidates {
     double unit_ = 1.0;
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "numerics/stiffness.h"
+#include "sintering/stiffness.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Incomplete block factorisation L D L^T without fill, IC(0), of the 3x3 blocks inside each chunk; contacts between chunks count
 /// on the diagonal only. The strains of the box have their own block. Exact where no particle of a chunk has two neighbours in
@@ -43,4 +43,4 @@ class Preconditioner {
     Eigen::Matrix3d strain_inverse_ = Eigen::Matrix3d::Zero();
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -5,7 +5,7 @@
 
 #include "core/state.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 struct Quad {
     using Lanes = float __attribute__((vector_size(16)));
@@ -70,4 +70,4 @@ inline void add_product(Quad a, Quad b, WideQuad& sums) {
     sums.lanes += __builtin_convertvector(a.lanes, WideQuad::Lanes) * __builtin_convertvector(b.lanes, WideQuad::Lanes);
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -4,7 +4,7 @@
 #include "core/state.h"
 #include "physics/sinter_contact.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// Linear response of a periodic packing at rest: stress = sintering stress + viscosity * strain rate, along the axes of the box.
 struct ViscousResponse {
@@ -27,4 +27,4 @@ struct ViscousResponse {
 /// R*. temperature: K. Contacts that do not diffuse hold their particles together. Throws Error where an axis is not periodic.
 ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature);
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

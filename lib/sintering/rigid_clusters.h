@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "core/contacts.h"
-#include "numerics/kinetics.h"
-#include "numerics/packing.h"
+#include "sintering/kinetics.h"
+#include "sintering/sintering_body.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 /// True for a pair that does not diffuse and touches, to a millionth of its reduced radius: it moves as one.
-bool sticks(const Packing& packing, const Kinetics& kinetics, const Pair& pair);
+bool sticks(const SinteringBody& packing, const Kinetics& kinetics, const Pair& pair);
 
 /// The nodes that a step moves: particles, or clusters of particles whose contacts do not diffuse (rigid inclusions). A cluster
 /// translates as a whole, since no contact of the model passes a moment, and takes no part in the strain of the box.
@@ -48,4 +48,4 @@ class RigidClusters {
     std::array<bool, 3> locked_{false, false, false};
 };
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -1,14 +1,14 @@
 // viscosity.cpp: four linear solves on the contact network, one without strain and one for each axis.
-#include "numerics/viscosity.h"
+#include "sintering/viscosity.h"
 
 #include <algorithm>
 
-#include "numerics/conjugate_gradients.h"
-#include "numerics/kinetics.h"
-#include "numerics/packing.h"
-#include "numerics/rigid_clusters.h"
+#include "sintering/conjugate_gradients.h"
+#include "sintering/kinetics.h"
+#include "sintering/sintering_body.h"
+#include "sintering/rigid_clusters.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -37,7 +37,7 @@ struct Contacts {
     }
 };
 
-Contacts contacts_of(const Packing& packing, const Kinetics& kinetics, const physics::ContactConstants& constants,
+Contacts contacts_of(const SinteringBody& packing, const Kinetics& kinetics, const physics::ContactConstants& constants,
                      const std::vector<double>& diffusion, const RigidClusters& clusters) {
     Contacts contacts;
     for (const Pair& pair : packing.pairs()) {
@@ -71,7 +71,7 @@ Stiffness stiffness_of(const ContactNetwork& network, const Contacts& contacts) 
     return stiffness;
 }
 
-std::vector<Pair> sticking_pairs(const Packing& packing, const Kinetics& kinetics) {
+std::vector<Pair> sticking_pairs(const SinteringBody& packing, const Kinetics& kinetics) {
     std::vector<Pair> sticking;
     for (const Pair& pair : packing.pairs())
         if (sticks(packing, kinetics, pair)) sticking.push_back(pair);
@@ -83,7 +83,7 @@ std::vector<Pair> sticking_pairs(const Packing& packing, const Kinetics& kinetic
 ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature) {
     for (const bool axis : state.box.periodic)
         if (!axis) throw Error("viscosities are those of a box that is periodic along all axes");
-    const Packing packing(state, Faces::as_given);
+    const SinteringBody packing(state, Faces::as_given);
     const Kinetics kinetics(state, physics::Schedule::hold(temperature));
     const RigidClusters clusters(packing.box(), packing.particles().position, sticking_pairs(packing, kinetics));
     Contacts contacts = contacts_of(packing, kinetics, constants, kinetics.diffusion_at(temperature), clusters);
@@ -129,4 +129,4 @@ ViscousResponse viscous_response(const State& state, const physics::ContactConst
     return response;
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering

@@ -1,7 +1,7 @@
 // sintering.cpp: checkpoints, the same for every method.
-#include "numerics/sintering.h"
+#include "sintering/sintering.h"
 
-namespace kiln::numerics {
+namespace kiln::sintering {
 
 namespace {
 
@@ -18,23 +18,23 @@ std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::
 }
 
 State SinteringMethod::checkpoint() const {
-    State state = packing_.working();
+    State state = body_.working();
     for (NamedArray& array : arrays()) state.particles.other.push_back(std::move(array));
     Json own = numbers();
     own["steps"] = steps_;
-    own["strain"] = triple(packing_.strain());
+    own["strain"] = triple(body_.strain());
     state.other[key] = std::move(own);
     return state;
 }
 
 void SinteringMethod::restore(const State& checkpoint) {
-    if (checkpoint.particles.size() != packing_.size())
+    if (checkpoint.particles.size() != body_.size())
         throw Error("the checkpoint has " + std::to_string(checkpoint.particles.size()) + " particles, the state has " +
-                    std::to_string(packing_.size()));
+                    std::to_string(body_.size()));
     const Json own = checkpoint.other.value(key, Json());
     if (!own.is_object()) throw Error("the checkpoint has no " + std::string(key));
     try {
-        packing_.restore(checkpoint.box, checkpoint.particles.position, checkpoint.time, checkpoint.temperature.value_or(0.0),
+        body_.restore(checkpoint.box, checkpoint.particles.position, checkpoint.time, checkpoint.temperature.value_or(0.0),
                          triple_from(own.at("strain")));
         steps_ = own.at("steps");
         take_up(own, checkpoint.particles.other);
@@ -43,4 +43,4 @@ void SinteringMethod::restore(const State& checkpoint) {
     }
 }
 
-}  // namespace kiln::numerics
+}  // namespace kiln::sintering
