@@ -1,10 +1,18 @@
-# checks.mk: what looks for faults besides the tests: sanitizers, clang-tidy, a comparison of builds. None is needed for `make
-# test`.
+# checks.mk: what looks for faults besides the tests: relations, sanitizers, clang-tidy, a comparison of builds. None is needed
+# for `make test`.
 TIDY        ?= clang-tidy-14
 TSAN_CXX    ?= clang++-14
 ARCHER      ?= /usr/lib/llvm-14/lib/libarcher.so
 
-.PHONY: asan tsan tidy same-bytes
+# Trials of each relation, and the seed of the first.
+TRIALS      ?= 8
+SEED        ?= 1
+
+.PHONY: relations asan tsan tidy same-bytes
+
+relations: all                  ## try TRIALS (8) random cases of what must hold whatever the input, from SEED (1) on; 5 minutes
+	BUILD=$(BUILD) PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/relations/relations.py --trials $(TRIALS) --seed $(SEED) \
+	    --keep $(abspath $(BUILD))/relations
 
 asan:                           ## build with address and undefined-behaviour sanitizers into build-asan and run all tests
 	SANITIZED=1 $(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \

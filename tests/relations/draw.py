@@ -1,0 +1,132 @@
+"""draw.py: green bodies, firings and bars drawn at random, over the options that the programs have."""
+import numpy
+
+from trial import Broken
+
+SECOND = {"name": "second", "density": 6000.0, "surface_energy": 0.8, "atomic_volume": 3e-29,
+          "grain_boundary_diffusion": {"prefactor": 2e-14, "activation_energy": 450e3},
+          "young_modulus": 210e9, "poisson_ratio": 0.3}
+
+
+def sizes(trial):
+    """Options of a size distribution with diameters of tens to hundreds of nanometres."""
+    median = round(trial.between(60, 300), 1)
+    lognormal = f"{median}nm:{trial.between(1.05, 1.35):.3f}:{median / 2:.1f}nm:{median * 2:.1f}nm"
+    bimodal = f"{median}nm:{median * trial.between(1.2, 2.0):.1f}nm:{trial.between(0.2, 0.8):.2f}"
+    return [trial.choose(f"--diameter={median}nm", f"--distribution=lognormal:{lognormal}", f"--distribution=bimodal:{bimodal}")]
+
+
+def packing(trial, most=160, aspect=None):
+    """Options of `sinter green` for a packing of 30 to `most` particles with contacts throughout."""
+    number = int(trial.random.integers(30, most + 1))
+    aspect = aspect or trial.choose("1:1:1", "1:1:1", "2:1:1", "1:2:1.5", "1:1:0.7")
+    method = trial.choose(["--method=loose", f"--density={trial.between(0.45, 0.52):.3f}"],
+                          ["--method=affine", f"--density={trial.between(0.4, 0.48):.3f}",
+                           f"--compact-to={trial.between(0.52, 0.62):.3f}"],
+                          ["--method=soft", f"--density={trial.between(0.55, 0.62):.3f}"])
+    return [f"--particles={number}", *sizes(trial), f"--aspect={aspect}", *method, f"--seed={trial.random.integers(10**6)}"]
+
+
+def green(trial, most=160, aspect=None, mixed=0.4):
+    """A packing, in the share `mixed` of all cases with a second material for some of its particles."""
+    state, = trial.states("sinter", "green", *packing(trial, most, aspect))
+    if trial.random.uniform() < mixed:
+        second = {**SECOND, "dihedral_angle": 2.0} if trial.random.uniform() < 0.3 else SECOND
+        state["materials"] = [*state["materials"], second]
+        rows = trial.random.uniform(size=len(state["particles"]["radius"])) < trial.between(0.1, 0.5)
+        state["particles"]["material"] = rows.astype("i4")
+    return state
+
+
+def density_of(state):
+    return float(4 / 3 * numpy.pi * (state["particles"]["radius"] ** 3).sum() / numpy.prod(numpy.diag(state["box"]["vectors"])))
+
+
+class Firing:
+    """Options of `sinter` apart from the times and densities wanted: temperature, faces of the box, constants of the contact."""
+
+    def __init__(self, trial, tolerance=1e-4, faces=True):
+        self.tolerance = tolerance
+        self.options = [f"--temperature={trial.between(1100, 1300):.1f}C", f"--tolerance={tolerance}"]
+        self.fixed, self.pressure = "", (0.0, 0.0, 0.0)
+        kind = trial.choose("free axes", "free axes", "fixed", "loaded", "no faces") if faces else "free axes"
+        self.boundary = "free" if kind == "no faces" else None
+        if kind == "fixed":
+            self.fixed = trial.choose("x", "y", "z", "xy", "yz", "xz")
+        if kind == "loaded":
+            self.pressure = tuple(float(trial.choose(0.0, 1e6, 5e6, 2e7)) for _ in range(3))
+        if trial.random.uniform() < 0.3:
+            self.options += [f"--alpha={trial.between(3, 5):.3f}", f"--eta={trial.choose(0.001, 0.1, 1)}"]
+
+    def arguments(self, *wanted):
+        faces = [f"--boundary={self.boundary}"] if self.boundary else []
+        if self.fixed:
+            faces.append(f"--fix={self.fixed}")
+        if any(self.pressure):
+            faces.append("--pressure=" + ",".join(f"{value!r}Pa" for value in self.pressure))
+        return [*self.options, *faces, *wanted]
+
+    def turned(self, axes):
+        """The same along other axes: new axis k is old axis axes[k]."""
+        other = object.__new__(Firing)
+        other.__dict__.update(self.__dict__)
+        other.fixed = "".join("xyz"[k] for k in range(3) if "xyz"[axes[k]] in self.fixed)
+        other.pressure = tuple(self.pressure[k] for k in axes)
+        return other
+
+
+def fired(trial, firing, state, *wanted, name="green.kiln", statuses=(0,)):
+    """What `sinter` makes of a state."""
+    return trial.states("sinter", *firing.arguments(*wanted), trial.put(name, state), statuses=statuses)
+
+
+def goal(trial, state, least=0.01, most=0.06):
+    """A density somewhat above that of a state."""
+    return density_of(state) + trial.between(least, most)
+
+
+def until_taken(make, *refusals):
+    """What make() gives, drawn anew as long as a program refuses it in one of these sentences: bodies too loose for what is
+    asked of them."""
+    for _ in range(20):
+        try:
+            return make()
+        except Broken as broken:
+            if not any(refusal in str(broken) for refusal in refusals):
+                raise
+            said = broken
+    raise Broken(f"drawn twenty times, and every time refused: {said}")
+
+
+def bonded(trial, most=200, mixed=0.3, options=()):
+    """A packing whose overlaps became bonds."""
+    state = green(trial, most, mixed=mixed)
+    made, = trial.states("bondify", "--quiet", *options, trial.put("overlapping.kiln", state))
+    return made
+
+
+def cell(trial, most=200, *options):
+    """A bonded packing that resists every strain, and its elastic tensor."""
+    def make():
+        state = bonded(trial, most)
+        return state, trial.results("analyze", "elastic", *options, trial.put("bonded.kiln", state))[0]
+
+    return until_taken(make, "some strain meets no resistance")
+
+
+def bar(trial, most=300, mixed=0.3):
+    """A bar that bends, with options of `bend` and its result."""
+    def make():
+        number = int(trial.random.integers(60, most + 1))
+        packed = [f"--particles={number}", *sizes(trial), f"--aspect={trial.between(3, 6):.2f}:1:{trial.between(0.8, 1.2):.2f}",
+                  "--method=affine", "--density=0.45", f"--compact-to={trial.between(0.6, 0.75):.3f}",
+                  f"--seed={trial.random.integers(10**6)}"]
+        state, = trial.states("sinter", "green", *packed)
+        if trial.random.uniform() < mixed:
+            state["materials"] = [*state["materials"], SECOND]
+            state["particles"]["material"] = (trial.random.uniform(size=number) < 0.3).astype("i4")
+        state, = trial.states("bondify", "--quiet", trial.put("overlapping.kiln", state))
+        options = ["--quiet", f"--bond-law={trial.choose('series', 'neck', 'centre')}", "--points=4", "--cycles=1"]
+        return state, options, trial.results("bend", *options, trial.put("bar.kiln", state))[0]
+
+    return until_taken(make, "is in pieces", "does not reach its supports", "touches no particle", "does not bend downwards")
