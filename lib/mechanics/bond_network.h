@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "core/state.h"
-#include "mechanics/block_matrix.h"
+#include "linalg/block_matrix.h"
 #include "physics/bond_law.h"
 #include "physics/bond_stress.h"
 
 namespace kiln::mechanics {
+
+using linalg::BlockMatrix, linalg::Mat6, linalg::Vec6, linalg::Vector, linalg::worth_threads;
 
 /// Nodes with six freedoms each: displacement (m) and rotation (rad) times rotation_length (m).
 struct BondNetwork {

@@ -3,6 +3,8 @@
 
 namespace kiln::mechanics {
 
+using linalg::add, linalg::dot, linalg::multiply, linalg::norm, linalg::residual;
+
 SolveReport conjugate_gradient(const BlockMatrix& matrix, const std::function<void(const Vector&, Vector&)>& precondition,
                                const Vector& b, Vector& x, double tolerance, int max_iterations) {
     SolveReport report;

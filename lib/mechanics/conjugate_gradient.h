@@ -3,9 +3,11 @@
 
 #include <functional>
 
-#include "mechanics/block_matrix.h"
+#include "linalg/block_matrix.h"
 
 namespace kiln::mechanics {
+
+using linalg::BlockMatrix, linalg::Mat6, linalg::Vec6, linalg::Vector, linalg::worth_threads;
 
 struct SolveReport {
     int iterations = 0;

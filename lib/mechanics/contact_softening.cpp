@@ -15,7 +15,7 @@ std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 void ContactProblem::start_anew() {
     Field sum{Vector(network_.nodes(), Vec6::Zero()), combine(true)};
     for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {
-        add(amplitude_[static_cast<Eigen::Index>(k) + 1], fields_[k].displacement, sum.displacement);
+        linalg::add(amplitude_[static_cast<Eigen::Index>(k) + 1], fields_[k].displacement, sum.displacement);
     }
     fields_.resize(rigid_motions_);
     const auto columns = static_cast<Eigen::Index>(rigid_motions_) + 1;

@@ -146,7 +146,7 @@ void ContactProblem::add_field(Field field) {
     for (std::size_t k = 0; k < fields_.size(); ++k) {
         if (fields_[k].force.empty()) continue;
         const auto row = static_cast<Eigen::Index>(k) + 1;
-        stiffness_(row, column) = stiffness_(column, row) = dot(fields_[k].displacement, added.force);
+        stiffness_(row, column) = stiffness_(column, row) = linalg::dot(fields_[k].displacement, added.force);
     }
 }
 
@@ -154,7 +154,7 @@ Vector ContactProblem::combine(bool forces) const {
     Vector sum(network_.nodes(), Vec6::Zero());
     for (std::size_t k = 0; k < fields_.size(); ++k) {
         const Vector& field = forces ? fields_[k].force : fields_[k].displacement;
-        if (!field.empty()) add(amplitude_[static_cast<Eigen::Index>(k) + 1], field, sum);
+        if (!field.empty()) linalg::add(amplitude_[static_cast<Eigen::Index>(k) + 1], field, sum);
     }
     return sum;
 }
@@ -163,7 +163,7 @@ Vector ContactProblem::combine(bool forces) const {
 void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     Field field;
     iterations += solver_->solve(unbalanced, field.displacement, response_tolerance).iterations;
-    const double all = dot(field.displacement, unbalanced);
+    const double all = linalg::dot(field.displacement, unbalanced);
     const auto elastic_fields = static_cast<Eigen::Index>(fields_.size() - rigid_motions_);
     const Eigen::LDLT<Eigen::MatrixXd> elastic(stiffness_.bottomRightCorner(elastic_fields, elastic_fields));
     double rest = 0.0;  // energy that the fields there do not have
@@ -172,15 +172,15 @@ void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
         for (std::size_t k = 0; k < fields_.size(); ++k) {
             const Field& other = fields_[k];
             if (k < rigid_motions_) {
-                add(-dot(field.displacement, other.displacement) / dot(other.displacement, other.displacement), other.displacement,
+                linalg::add(-linalg::dot(field.displacement, other.displacement) / linalg::dot(other.displacement, other.displacement), other.displacement,
                     field.displacement);
             } else {
-                loads[static_cast<Eigen::Index>(k - rigid_motions_)] = dot(field.displacement, other.force);
+                loads[static_cast<Eigen::Index>(k - rigid_motions_)] = linalg::dot(field.displacement, other.force);
             }
         }
         const Eigen::VectorXd shares = elastic.rows() > 0 ? elastic.solve(loads) : loads;
         for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {
-            add(-shares[static_cast<Eigen::Index>(k - rigid_motions_)], fields_[k].displacement, field.displacement);
+            linalg::add(-shares[static_cast<Eigen::Index>(k - rigid_motions_)], fields_[k].displacement, field.displacement);
         }
         rest = all - loads.dot(shares);
     }
@@ -188,7 +188,7 @@ void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     if (!(largest > 0.0)) return;
     for (Vec6& each : field.displacement) each /= largest;
     solver_->forces(field.displacement, field.force);
-    if (dot(field.displacement, field.force) * largest * largest > least_novelty * all) add_field(std::move(field));
+    if (linalg::dot(field.displacement, field.force) * largest * largest > least_novelty * all) add_field(std::move(field));
 }
 
 }  // namespace kiln::mechanics

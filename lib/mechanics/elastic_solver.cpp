@@ -21,8 +21,8 @@ std::size_t middle_node(const BondNetwork& network) {
     return nearest;
 }
 
-NodeGeometry geometry_of(const BondNetwork& network) {
-    NodeGeometry geometry{network.position, network.period / network.rotation_length};
+linalg::NodeGeometry geometry_of(const BondNetwork& network) {
+    linalg::NodeGeometry geometry{network.position, network.period / network.rotation_length};
     for (Vec3& position : geometry.position) position /= network.rotation_length;
     return geometry;
 }
@@ -40,7 +40,7 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground)
         if (ground == Ground::displacement_and_rotation) ground_.tail<3>().setConstant(mean);
         block.diagonal() += ground_;
     }
-    preconditioner_ = std::make_unique<Multigrid>(matrix_, geometry_of(network), largest_eigenvalue_of_bonds);
+    preconditioner_ = std::make_unique<linalg::Multigrid>(matrix_, geometry_of(network), largest_eigenvalue_of_bonds);
 }
 
 SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
@@ -63,7 +63,7 @@ void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double 
 }
 
 void ElasticSolver::forces(const Vector& displacement, Vector& force) const {
-    multiply(matrix_, displacement, force);
+    linalg::multiply(matrix_, displacement, force);
     force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
 }
 

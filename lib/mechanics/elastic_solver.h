@@ -5,7 +5,7 @@
 
 #include "mechanics/bond_network.h"
 #include "mechanics/conjugate_gradient.h"
-#include "mechanics/multigrid.h"
+#include "linalg/multigrid.h"
 
 namespace kiln::mechanics {
 
@@ -30,13 +30,13 @@ class ElasticSolver {
     /// for the softer body.
     void soften(const BondNetwork& network, std::size_t bond, double share);
 
-    const Multigrid& preconditioner() const { return *preconditioner_; }
+    const linalg::Multigrid& preconditioner() const { return *preconditioner_; }
 
    private:
     BlockMatrix matrix_;  // with the ground springs
     std::size_t grounded_ = 0;
     Vec6 ground_ = Vec6::Zero();
-    std::unique_ptr<Multigrid> preconditioner_;
+    std::unique_ptr<linalg::Multigrid> preconditioner_;
 };
 
 }  // namespace kiln::mechanics

@@ -141,7 +141,7 @@ TEST_CASE("iterations grow neither with the number of particles nor with slender
 TEST_CASE("the preconditioner is symmetric and positive") {
     const BondNetwork network = bonded_body(rough_bar({30, 6, 6}), {}).network;
     ElasticSolver solver(network, Ground::displacement_and_rotation);
-    Multigrid preconditioner = solver.preconditioner();
+    linalg::Multigrid preconditioner = solver.preconditioner();
     Vector a(network.nodes()), b(network.nodes()), pa, pb;
     for (std::size_t i = 0; i < network.nodes(); ++i) {
         for (int k = 0; k < 6; ++k) {

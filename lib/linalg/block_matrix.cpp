@@ -1,10 +1,10 @@
 // block_matrix.cpp: products of block matrices and vectors, the same to the last bit for any number of threads.
-#include "mechanics/block_matrix.h"
+#include "linalg/block_matrix.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace kiln::mechanics {
+namespace kiln::linalg {
 
 namespace {
 
@@ -154,4 +154,4 @@ void add(double factor, const Vector& x, Vector& y) {
     for (std::size_t i = 0; i < x.size(); ++i) y[i] += factor * x[i];
 }
 
-}  // namespace kiln::mechanics
+}  // namespace kiln::linalg

@@ -1,9 +1,9 @@
 // aggregation.cpp: greedy aggregates and their rigid-body prolongation.
-#include "mechanics/aggregation.h"
+#include "linalg/aggregation.h"
 
 #include <cmath>
 
-namespace kiln::mechanics {
+namespace kiln::linalg {
 
 namespace {
 
@@ -70,4 +70,4 @@ BlockMatrix rigid_prolongation(const Aggregates& aggregates, const NodeGeometry&
     return prolongation;
 }
 
-}  // namespace kiln::mechanics
+}  // namespace kiln::linalg

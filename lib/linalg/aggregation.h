@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "mechanics/block_matrix.h"
-#include "mechanics/multigrid.h"
+#include "linalg/block_matrix.h"
+#include "linalg/node_geometry.h"
 
-namespace kiln::mechanics {
+namespace kiln::linalg {
 
 /// A node's aggregate and the aggregates' root nodes.
 struct Aggregates {
@@ -23,4 +23,4 @@ Mat6 rigid_motion(const Vec3& lever);
 /// Prolongation that moves every aggregate as a rigid body, about its root.
 BlockMatrix rigid_prolongation(const Aggregates& aggregates, const NodeGeometry& geometry);
 
-}  // namespace kiln::mechanics
+}  // namespace kiln::linalg

@@ -1,12 +1,12 @@
 // multigrid.cpp: hierarchy of aggregates, Chebyshev smoothing and the V-cycle.
-#include "mechanics/multigrid.h"
+#include "linalg/multigrid.h"
 
 #include <Eigen/LU>
 #include <cmath>
 
-#include "mechanics/aggregation.h"
+#include "linalg/aggregation.h"
 
-namespace kiln::mechanics {
+namespace kiln::linalg {
 
 namespace {
 
@@ -74,14 +74,6 @@ Eigen::MatrixXd dense(const BlockMatrix& matrix) {
 }
 
 }  // namespace
-
-Vec3 NodeGeometry::between(std::int32_t i, std::int32_t j) const {
-    Vec3 vector = position[at(j)] - position[at(i)];
-    for (int axis = 0; axis < 3; ++axis) {
-        if (period[axis] > 0.0) vector[axis] -= period[axis] * std::round(vector[axis] / period[axis]);
-    }
-    return vector;
-}
 
 Multigrid::Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double largest_eigenvalue_bound) {
     levels_.emplace_back();
@@ -193,4 +185,4 @@ void Multigrid::apply(const Vector& r, Vector& z) {
     z = levels_.front().solution;
 }
 
-}  // namespace kiln::mechanics
+}  // namespace kiln::linalg

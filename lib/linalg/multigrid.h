@@ -4,19 +4,10 @@
 #include <Eigen/Cholesky>
 #include <vector>
 
-#include "core/types.h"
-#include "mechanics/block_matrix.h"
+#include "linalg/block_matrix.h"
+#include "linalg/node_geometry.h"
 
-namespace kiln::mechanics {
-
-/// Where the nodes of a matrix are, in units of the length that its rotations are multiplied by.
-struct NodeGeometry {
-    std::vector<Vec3> position;
-    Vec3 period;  // 0 along an axis that is not periodic
-
-    /// From node i to the nearest image of node j.
-    Vec3 between(std::int32_t i, std::int32_t j) const;
-};
+namespace kiln::linalg {
 
 /// One V-cycle with polynomial smoothing: symmetric, positive definite, and independent of the number of threads.
 /// Vanek, Mandel & Brezina 1996 (smoothed aggregation); the aggregates' six rigid motions need no orthogonalisation, since a coarse
@@ -54,4 +45,4 @@ class Multigrid {
     Eigen::LLT<Eigen::MatrixXd> coarsest_;
 };
 
-}  // namespace kiln::mechanics
+}  // namespace kiln::linalg

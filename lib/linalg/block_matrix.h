@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace kiln::mechanics {
+namespace kiln::linalg {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -63,4 +63,4 @@ double norm(const Vector& x);
 /// y += factor x.
 void add(double factor, const Vector& x, Vector& y);
 
-}  // namespace kiln::mechanics
+}  // namespace kiln::linalg
