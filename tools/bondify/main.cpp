@@ -2,17 +2,17 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "tools/bondify/bondify.h"
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "io/files.h"
+#include "tools/bondify/options.h"
 
 namespace {
 
 using namespace kiln;
 
 /// One sentence for each thing about a state that the user should know.
-void report(const bondify::Summary& summary, const bondify::Options& options, std::size_t number) {
+void report(const bonding::Summary& summary, const bonding::Options& options, std::size_t number) {
     const auto warn = [number](const auto&... words) {
         std::ostringstream sentence;
         sentence << "state " << number << ": ";
@@ -24,16 +24,16 @@ void report(const bondify::Summary& summary, const bondify::Options& options, st
         warn(summary.clamped, " of ", summary.pairs, " bonds are clamped to the radius of their smaller particle; a volume of ",
              summary.lost_volume, " m3 finds no room in them");
     if (summary.stopped > 0)
-        warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bondify::smallest_share, " % of their radius");
+        warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::smallest_share, " % of their radius");
     if (options.drop_thin && summary.thin > 0)
         warn(summary.thin, " thin bonds are left out, and ", summary.dropped_volume, " m3 of solid with them");
 }
 
 int run(int argc, char** argv) {
     cli::Common common;
-    bondify::Options options;
+    bonding::Options options;
     CLI::App app{"", "bondify"};
-    options.add_to(app);
+    bondify::add_options(app, options);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
 
@@ -45,11 +45,11 @@ int run(int argc, char** argv) {
         ++number;
         if (state->bonds && !common.quiet)
             cli::warn("bondify", "state " + std::to_string(number) + ": the bonds that it had are replaced");
-        const bondify::Watch watch = [&](double done) {
+        const bonding::Watch watch = [&](double done) {
             progress.show(done, "state " + std::to_string(number));
             return !cli::stop_requested();
         };
-        const bondify::Summary summary = bondify::bondify(*state, options, watch);
+        const bonding::Summary summary = bonding::bondify(*state, options, watch);
         if (!summary.finished) return cli::interrupted;
         progress.clear();
         if (!common.quiet) report(summary, options, number);

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/bondify/shrink.h"
+#include "bonding/shrink.h"
 
-namespace kiln::bondify {
+namespace kiln::bonding {
 
 namespace {
 
@@ -147,4 +147,4 @@ Shrunk shrink_exactly(std::span<const double> radius, std::span<const Overlap> o
     return Shrinking(radius, overlaps, sharing).run();
 }
 
-}  // namespace kiln::bondify
+}  // namespace kiln::bonding

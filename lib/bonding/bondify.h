@@ -3,10 +3,22 @@
 
 #include <cstdint>
 
-#include "tools/bondify/options.h"
+#include "bonding/shrink.h"
 #include "core/state.h"
+#include "physics/bond_geometry.h"
 
-namespace kiln::bondify {
+namespace kiln::bonding {
+
+enum class Method { exact, sweep };
+
+struct Options {
+    Method method = Method::exact;
+    double decrement = 1e-13;  // m, of a sweep
+    Sharing sharing = Sharing::pair;
+    physics::BondVolume volume = physics::BondVolume::cylinder;
+    double thin_ratio = 0.01;  // bond radius over the smaller particle's radius, below which a bond is thin
+    bool drop_thin = false;
+};
 
 /// What a state's history says about its transition.
 struct Summary {
@@ -30,4 +42,4 @@ struct Summary {
 /// Throws Error naming both ids where centres lie closer than 2 % of the sum of the radii.
 Summary bondify(State& state, const Options& options, const Watch& watch);
 
-}  // namespace kiln::bondify
+}  // namespace kiln::bonding

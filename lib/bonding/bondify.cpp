@@ -1,12 +1,12 @@
 // bondify.cpp: overlaps are found, particles shrink, bonds get their radii and lengths.
-#include "tools/bondify/bondify.h"
+#include "bonding/bondify.h"
 
 #include <cmath>
 #include <sstream>
 
 #include "core/neighbours.h"
 
-namespace kiln::bondify {
+namespace kiln::bonding {
 
 namespace {
 
@@ -131,4 +131,4 @@ Summary bondify(State& state, const Options& options, const Watch& watch) {
     return summary;
 }
 
-}  // namespace kiln::bondify
+}  // namespace kiln::bonding

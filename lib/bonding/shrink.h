@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace kiln::bondify {
+namespace kiln::bonding {
 
 /// Two overlapping particles (rows; equal for a particle and its own image) and the distance of their centres, m.
 struct Overlap {
@@ -44,4 +44,4 @@ Shrunk shrink_exactly(std::span<const double> radius, std::span<const Overlap> o
 Shrunk shrink_by_sweeps(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, double decrement,
                         const Watch& watch);
 
-}  // namespace kiln::bondify
+}  // namespace kiln::bonding

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <numbers>
 
-#include "tools/bondify/shrink.h"
+#include "bonding/shrink.h"
 
-namespace kiln::bondify {
+namespace kiln::bonding {
 
 namespace {
 
@@ -55,4 +55,4 @@ Shrunk shrink_by_sweeps(std::span<const double> radius, std::span<const Overlap>
     return result;
 }
 
-}  // namespace kiln::bondify
+}  // namespace kiln::bonding
