@@ -1,5 +1,5 @@
 // dynamic_test.cpp: explicit motion against closed forms, and dynamic bending against the static method.
-#include "tools/bend/dynamic_test.h"
+#include "bending/dynamic_bending.h"
 
 #include <doctest/doctest.h>
 #include <omp.h>
@@ -9,10 +9,10 @@
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "tools/bend/report.h"
-#include "tools/bend/static_test.h"
+#include "bending/static_bending.h"
 
 using namespace kiln;
-using namespace kiln::bend;
+using namespace kiln::bending;
 using test::relative;
 
 namespace {
@@ -113,7 +113,7 @@ TEST_CASE("dynamic bending: the same bytes for any number of threads") {
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
         documents.push_back(
-            document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options, no_stop), options, Json::array()).dump());
+            bend::document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options, no_stop), options, Json::array()).dump());
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);

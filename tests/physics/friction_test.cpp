@@ -11,12 +11,12 @@
 #include "physics/hertz.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
-#include "tools/bend/dynamic_test.h"
+#include "bending/dynamic_bending.h"
 #include "tools/bend/report.h"
-#include "tools/bend/static_test.h"
+#include "bending/static_bending.h"
 
 using namespace kiln;
-using namespace kiln::bend;
+using namespace kiln::bending;
 using test::relative;
 
 namespace {
@@ -247,7 +247,7 @@ TEST_CASE("friction: the same at any scale from 1 nm to 1 m, and the same bytes 
     std::vector<std::string> documents;
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
-        documents.push_back(document(bent(test::make_rough_bar({20, 20, 6}), options), options, Json::array()).dump());
+        documents.push_back(bend::document(bent(test::make_rough_bar({20, 20, 6}), options), options, Json::array()).dump());
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);

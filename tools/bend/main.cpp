@@ -2,13 +2,14 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
+#include "bending/dynamic_bending.h"
+#include "bending/failure.h"
+#include "bending/static_bending.h"
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "io/files.h"
-#include "tools/bend/dynamic_test.h"
+#include "tools/bend/options.h"
 #include "tools/bend/report.h"
-#include "tools/bend/static_test.h"
-#include "tools/bend/strength_test.h"
 
 namespace {
 
@@ -33,14 +34,14 @@ int run(int argc, char** argv) {
     while (auto state = input.next_state()) {
         const std::string name = "state " + std::to_string(++number);
         Json history = state->history;
-        const bend::Watch watch = [&](double done) {
+        const bending::Watch watch = [&](double done) {
             progress.show(done, name);
             return !cli::stop_requested();
         };
-        const auto test = options.to_failure()                     ? bend::bend_to_failure
-                          : options.method == bend::Method::motion ? bend::bend_dynamic
-                                                                   : bend::bend_static;
-        const bend::Result result = test(std::move(*state), options, watch);
+        const auto test = options.to_failure()                     ? bending::bend_to_failure
+                          : options.method == bending::Method::motion ? bending::bend_dynamic
+                                                                   : bending::bend_static;
+        const bending::Result result = test(std::move(*state), options, watch);
         if (cli::stop_requested()) return cli::interrupted;
         progress.clear();
         if (!result.converged) cli::warn("bend", name + ": some forces stayed unbalanced; see \"residual\" in the result");

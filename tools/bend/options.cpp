@@ -9,6 +9,8 @@
 
 namespace kiln::bend {
 
+using bending::Method;
+
 namespace {
 
 constexpr const char* description =
@@ -122,7 +124,5 @@ void Options::add_dynamic(CLI::App& app) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
 }
-
-std::string name_of(Method method) { return method == Method::motion ? "dynamic" : "static"; }
 
 }  // namespace kiln::bend

@@ -6,6 +6,8 @@
 
 namespace kiln::bend {
 
+using bending::DynamicRun, bending::Method, bending::Options, bending::Point, bending::Result, bending::Specimen;
+
 namespace {
 
 NamedArray vectors(const std::string& name, const std::vector<Vec3>& rows) {

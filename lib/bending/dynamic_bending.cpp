@@ -1,5 +1,5 @@
-// dynamic_test.cpp: strokes of the punch, sampling of the curve and the balance of energy of the dynamic test.
-#include "tools/bend/dynamic_test.h"
+// dynamic_bending.cpp: strokes of the punch, sampling of the curve and the balance of energy of the dynamic test.
+#include "bending/dynamic_bending.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "physics/materials.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 namespace {
 
@@ -211,4 +211,4 @@ Result bend_dynamic(State state, const Options& options, const Watch& watch) {
     return result;
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

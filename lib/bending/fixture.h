@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "mechanics/contact_problem.h"
-#include "tools/bend/options.h"
-#include "tools/bend/specimen.h"
+#include "bending/options.h"
+#include "bending/specimen.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 /// Cylinders along y; lengths in m.
 struct Fixture {
@@ -54,4 +54,4 @@ class Gauge {
     std::vector<Weight> weights_;
 };
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

@@ -1,12 +1,12 @@
-// static_test.h: three-point bending as a sequence of equilibria.
+// static_bending.h: three-point bending as a sequence of equilibria.
 #pragma once
 
-#include "tools/bend/result.h"
+#include "bending/result.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 /// Loads and unloads the bar in equal steps of force. Throws Error where the bar cannot be tested (see place_fixture,
 /// find_contacts).
 Result bend_static(State state, const Options& options, const Watch& watch);
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

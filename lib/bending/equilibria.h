@@ -2,9 +2,9 @@
 #pragma once
 
 #include "mechanics/contact_problem.h"
-#include "tools/bend/result.h"
+#include "bending/result.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 struct Level {
     Point point;
@@ -59,4 +59,4 @@ class Equilibria {
     mechanics::Equilibrium last_;
 };
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

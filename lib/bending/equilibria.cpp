@@ -1,9 +1,9 @@
 // equilibria.cpp: the contact problem of a bar, and what is read from its equilibria.
-#include "tools/bend/equilibria.h"
+#include "bending/equilibria.h"
 
 #include <algorithm>
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 namespace {
 
@@ -63,4 +63,4 @@ Level Equilibria::level_of(mechanics::Equilibrium equilibrium, Result& result) {
             last_.friction_loss};
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

@@ -1,13 +1,13 @@
-// static_test.cpp: force levels of the static test and the cycles made of them; with friction, the way from one to the next.
-#include "tools/bend/static_test.h"
+// static_bending.cpp: force levels of the static test and the cycles made of them; with friction, the way from one to the next.
+#include "bending/static_bending.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tools/bend/equilibria.h"
+#include "bending/equilibria.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 namespace {
 
@@ -124,4 +124,4 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     return result;
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

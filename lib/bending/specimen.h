@@ -4,7 +4,7 @@
 #include "core/state.h"
 #include "mechanics/bond_network.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 /// The bar along x, with its width along y and its height along z, m.
 struct Specimen {
@@ -24,4 +24,4 @@ std::size_t cut_open(State& state);
 /// Throws Error for a state that cannot be made a bar: see mechanics::bonded_body.
 Specimen cut_specimen(State state, const mechanics::BondModel& model);
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

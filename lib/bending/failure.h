@@ -1,13 +1,13 @@
-// strength_test.h: three-point bending until the bar fails, bond by bond.
+// failure.h: three-point bending until the bar fails, bond by bond.
 #pragma once
 
-#include "tools/bend/result.h"
+#include "bending/result.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 /// Finds the punch force at which the next bond reaches its strength, breaks that bond, and goes on until the force has fallen to
 /// the wanted share of its greatest, or to nothing because the bar is in pieces. The curve holds one point a break. Throws Error
 /// where the bar cannot be tested (see place_fixture, find_contacts) and where no bond can break.
 Result bend_to_failure(State state, const Options& options, const Watch& watch);
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

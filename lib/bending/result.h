@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "mechanics/explicit_motion.h"
-#include "tools/bend/fixture.h"
+#include "bending/fixture.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 /// One point of the curve.
 struct Point {
@@ -62,4 +62,4 @@ void read_contacts(Result& result, const mechanics::Tooling& tooling, const mech
 /// Called between equilibria with the share of the work done; false stops the test.
 using Watch = std::function<bool(double)>;
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

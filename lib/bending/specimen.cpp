@@ -1,12 +1,12 @@
 // specimen.cpp: cutting a bar out of a periodic box.
-#include "tools/bend/specimen.h"
+#include "bending/specimen.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "physics/materials.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 namespace {
 
@@ -83,4 +83,4 @@ Specimen cut_specimen(State state, const mechanics::BondModel& model) {
     return specimen;
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

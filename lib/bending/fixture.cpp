@@ -1,5 +1,5 @@
 // fixture.cpp: placing cylinders around a bar.
-#include "tools/bend/fixture.h"
+#include "bending/fixture.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "physics/hertz.h"
 #include "physics/materials.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 namespace {
 
@@ -199,4 +199,4 @@ double Gauge::read(const mechanics::Vector& displacement) const {
     return sum;
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

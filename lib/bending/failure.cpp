@@ -1,5 +1,5 @@
-// strength_test.cpp: the sequence of breaking bonds.
-#include "tools/bend/strength_test.h"
+// failure.cpp: the sequence of breaking bonds.
+#include "bending/failure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "mechanics/connectivity.h"
-#include "tools/bend/equilibria.h"
+#include "bending/equilibria.h"
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 namespace {
 
@@ -159,4 +159,4 @@ Result bend_to_failure(State state, const Options& options, const Watch& watch) 
     return result;
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending

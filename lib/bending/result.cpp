@@ -1,9 +1,9 @@
 // result.cpp: where all methods begin, and what the contacts of an equilibrium say.
-#include "tools/bend/result.h"
+#include "bending/result.h"
 
 #include <algorithm>
 
-namespace kiln::bend {
+namespace kiln::bending {
 
 Result prepare(State state, const Options& options) {
     Result result;
@@ -22,4 +22,4 @@ void read_contacts(Result& result, const mechanics::Tooling& tooling, const mech
     result.thrust = thrust(tooling, forces);
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending
