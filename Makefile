@@ -57,7 +57,7 @@ $(BUILD)/libkiln.a: $(LIB_OBJECTS)
 	ar rcs $@ $^
 
 define tool_rule
-$(BUILD)/bin/$(1): $$(patsubst %.cpp,$(BUILD)/%.o,$$(wildcard tools/$(1)/*.cpp)) $(BUILD)/libkiln.a
+$(BUILD)/bin/$(1): $$(patsubst %.cpp,$(BUILD)/%.o,$$(wildcard tools/$(1)/*.cpp tools/common/*.cpp)) $(BUILD)/libkiln.a
 	@mkdir -p $$(@D)
 	$(CXX) $$^ $(LDFLAGS) -o $$@
 endef
@@ -67,7 +67,7 @@ $(BUILD)/test/unit: $(UNIT_OBJECTS) $(TOOL_OBJECTS) $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
-$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
+$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/tools/common/tool.o $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 

@@ -12,7 +12,7 @@
 #include <functional>
 #include <thread>
 
-#include "cli/tool.h"
+#include "tools/common/tool.h"
 #include "io/files.h"
 #include "io/state_io.h"
 

@@ -2,7 +2,7 @@
 INSTALLED   = $(DESTDIR)$(PREFIX)
 SHARE       = $(INSTALLED)/share
 DEB_FOLDER ?= $(BUILD)/deb
-VERSION     = $(shell sed -nE 's/.*version = "([^"]+)".*/\1/p' lib/cli/tool.h)
+VERSION     = $(shell sed -nE 's/.*version = "([^"]+)".*/\1/p' tools/common/tool.h)
 
 .PHONY: install deb
 

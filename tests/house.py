@@ -6,19 +6,27 @@ import sys
 
 LONGEST_LINE = 132  # characters
 LONGEST_FILE = 300  # lines
-# Which parts a part may include, besides itself. io lies beside the others on core; of physics it takes only the built-in
-# materials, as a state without any is made of alumina.
+# Which parts a part may include, besides itself: those on the floors below it.
+GROUND = ["lib/core"]
+FIRST = GROUND + ["lib/physics", "lib/linalg", "lib/bonding"]
+SECOND = FIRST + ["lib/sintering", "lib/mechanics", "lib/analysis", "lib/io"]
+LIBRARY = SECOND + ["lib/bending", "lib/packing"]
 BELOW = {
     "lib/core": [],
-    "lib/io": ["lib/core", "lib/physics"],
-    "lib/physics": ["lib/core"],
-    "lib/sintering": ["lib/core", "lib/physics"],
-    "lib/mechanics": ["lib/core", "lib/physics"],
-    "lib/cli": ["lib/core", "lib/io", "lib/physics", "lib/sintering", "lib/mechanics"],
-    "tools/sinter": ["lib/core", "lib/io", "lib/physics", "lib/sintering", "lib/cli"],
-    "tools/bondify": ["lib/core", "lib/io", "lib/physics", "lib/cli"],
-    "tools/bend": ["lib/core", "lib/io", "lib/physics", "lib/mechanics", "lib/cli"],
-    "tools/analyze": ["lib/core", "lib/io", "lib/physics", "lib/mechanics", "lib/cli"],
+    "lib/physics": GROUND,
+    "lib/linalg": GROUND,
+    "lib/bonding": GROUND + ["lib/physics"],
+    "lib/sintering": FIRST,
+    "lib/mechanics": FIRST,
+    "lib/analysis": FIRST,
+    "lib/io": FIRST,
+    "lib/bending": SECOND,
+    "lib/packing": SECOND,
+    "tools/common": LIBRARY,
+    "tools/sinter": LIBRARY + ["tools/common"],
+    "tools/bondify": LIBRARY + ["tools/common"],
+    "tools/bend": LIBRARY + ["tools/common"],
+    "tools/analyze": LIBRARY + ["tools/common"],
 }
 TEXT = (".cpp", ".h", ".py", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")
 MACHINE_PATH = re.compile(r"(?<![\w.$])/(home|root|work|mnt|srv)/")

@@ -20,4 +20,9 @@ struct Error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A text that a person wrote is not what it should be: "'5' has no unit". What is wrong on a command line is exit status 2.
+struct TextError : Error {
+    using Error::Error;
+};
+
 }  // namespace kiln

@@ -177,7 +177,7 @@ Equilibrium ContactProblem::search(const Drive& drive, double tolerance) {
         const bool settled = settle(drive);
         const Forces forces = forces_at(amplitude_);
         const Vector rest = unbalanced(forces);
-        state.residual = norm(rest) / forces.force.norm();
+        state.residual = linalg::norm(rest) / forces.force.norm();
         state.converged = settled && state.residual <= tolerance;
         const std::size_t fields = fields_.size();
         if (state.residual > tolerance && fields < most_fields) add_response(rest, state.iterations);

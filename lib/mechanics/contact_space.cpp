@@ -172,8 +172,9 @@ void ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
         for (std::size_t k = 0; k < fields_.size(); ++k) {
             const Field& other = fields_[k];
             if (k < rigid_motions_) {
-                linalg::add(-linalg::dot(field.displacement, other.displacement) / linalg::dot(other.displacement, other.displacement), other.displacement,
-                    field.displacement);
+                linalg::add(
+                    -linalg::dot(field.displacement, other.displacement) / linalg::dot(other.displacement, other.displacement),
+                    other.displacement, field.displacement);
             } else {
                 loads[static_cast<Eigen::Index>(k - rigid_motions_)] = linalg::dot(field.displacement, other.force);
             }

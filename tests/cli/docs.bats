@@ -65,12 +65,12 @@ END
 }
 
 @test "the laws that the page adds apply to the tree, compile without a warning and pass the page's test" {
-    rm lib tests
-    cp -r "$ROOT/lib" "$ROOT/tests" .
+    rm lib tests tools
+    cp -r "$ROOT/lib" "$ROOT/tests" "$ROOT/tools" .
     fenced diff docs/add-a-law.md >change
     GIT_CEILING_DIRECTORIES="$BATS_TEST_TMPDIR" git apply change
     compile() { g++ -std=c++20 -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror -Ilib -I. -isystem /usr/include/eigen3 "$@"; }
-    compile -fsyntax-only lib/cli/bond_model.cpp
+    compile -fsyntax-only tools/common/bond_model.cpp
     compile -fsyntax-only -x c++ - <<<'#include "physics/sinter_contact.h"'
     compile -o law lib/physics/bond_law.cpp tests/unit/stepped_law_test.cpp tests/unit/main.cpp
     run -0 ./law

@@ -13,7 +13,7 @@
 #include "physics/diffusion.h"
 #include "physics/materials.h"
 #include "tests/physics/relative.h"
-#include "tools/sinter/green_packing.h"
+#include "packing/packing.h"
 
 namespace sintering_cases {
 
@@ -67,11 +67,11 @@ inline double pair_law(double overlap, double reduced, double time) {
 }
 
 inline State random_packing(std::int64_t count, double density, double scale) {
-    sinter::PackingOptions wanted;
+    packing::PackingOptions wanted;
     wanted.particles = count;
     wanted.density = density;
     wanted.seed = 5;
-    State state = sinter::pack(wanted, [](const sinter::Relaxation&) { return true; });
+    State state = packing::pack(wanted, [](const packing::Relaxation&) { return true; });
     state.materials = {physics::builtin_material("alumina")};
     state.box.lengths *= scale;
     for (Vec3& position : state.particles.position) position *= scale;

@@ -159,7 +159,7 @@ TEST_CASE("a device is written and not replaced") {
 }
 
 TEST_CASE("a reader that goes away ends an output with ClosedPipe") {
-    std::signal(SIGPIPE, SIG_IGN);  // as lib/cli does for the tools
+    std::signal(SIGPIPE, SIG_IGN);  // as tools/common does for the tools
     const Folder folder;
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     const int reader = open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);

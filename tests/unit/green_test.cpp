@@ -15,7 +15,7 @@
 #include "tools/sinter/green_options.h"
 
 using namespace kiln;
-using namespace kiln::sinter;
+using namespace kiln::packing;
 
 namespace {
 
@@ -68,9 +68,9 @@ std::vector<double> diameters(const std::string& text, std::size_t particles, st
 }
 
 /// Parses and completes the options as the command does.
-GreenOptions parsed(std::vector<std::string> words) {
+sinter::GreenOptions parsed(std::vector<std::string> words) {
     CLI::App app;
-    GreenOptions options;
+    sinter::GreenOptions options;
     options.add_to(app);
     std::reverse(words.begin(), words.end());
     app.parse(words);

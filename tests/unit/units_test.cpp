@@ -4,11 +4,13 @@
 
 #include <numbers>
 
-#include "cli/units.h"
+#include "tools/common/quantity_options.h"
 
 namespace {
 
+using namespace kiln;
 using namespace kiln::cli;
+using namespace kiln::io;
 
 struct Case {
     Dimension dimension;
@@ -20,7 +22,7 @@ struct Case {
 std::string refusal(const std::string& text, Dimension dimension) {
     try {
         parse_quantity(text, dimension);
-    } catch (const CLI::ValidationError& error) {
+    } catch (const TextError& error) {
         return error.what();
     }
     return "";

@@ -7,9 +7,9 @@
 #include "io/state_io.h"
 #include "physics/bond_stress.h"
 #include "tools/analyze/analyze.h"
-#include "tools/analyze/histogram.h"
+#include "analysis/histogram.h"
 #include "tools/analyze/report.h"
-#include "tools/analyze/structure.h"
+#include "analysis/structure.h"
 
 namespace kiln::analyze {
 
@@ -53,17 +53,17 @@ void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
         const double* turn = moment->data() + 3 * bond;
         fibre.push_back(physics::bond_stress(tension, 0.0, std::hypot(turn[0], turn[1], turn[2]), 0.0, radius).tensile);
     }
-    result["normal_force"] = spread_of(*force);
+    result["normal_force"] = analysis::spread_of(*force);
     result["compressed_fraction"] = static_cast<double>(std::ranges::count_if(*force, [](double f) { return f < 0.0; })) /
                                     static_cast<double>(force->size());
-    result["normal_stress"] = spread_of(stress);
-    if (moment) result["fibre_stress"] = spread_of(fibre);
-    result["force_histogram"] = histogram_of(*force, bins, std::ranges::min(*force));
+    result["normal_stress"] = analysis::spread_of(stress);
+    if (moment) result["fibre_stress"] = analysis::spread_of(fibre);
+    result["force_histogram"] = analysis::histogram_of(*force, bins, std::ranges::min(*force));
 }
 
 Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
     if (!state.bonds) throw Error(place + ": has no bonds; bondify makes them");
-    const Density density = measured_density(state);
+    const analysis::Density density = analysis::measured_density(state);
     const auto mean = [](const std::vector<double>& values) {
         return values.empty() ? Json() : Json(sum(values) / static_cast<double>(values.size()));
     };
@@ -80,7 +80,7 @@ Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
                 {"mean_diameter", diameter},
                 {"mean_length", mean(bonds.length)},
                 {"bond_volume_fraction", bonds.size() == 0 ? 0.0 : in_bonds / (in_bonds + particle_volume(state.particles))},
-                {"histogram", histogram_of(bonds.radius, bins, 0.0)}};
+                {"histogram", analysis::histogram_of(bonds.radius, bins, 0.0)}};
     add_loads(result, bonds, bins);
     return result;
 }

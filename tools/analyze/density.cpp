@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <map>
 
-#include "cli/units.h"
+#include "tools/common/quantity_options.h"
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
-#include "tools/analyze/histogram.h"
-#include "tools/analyze/pair_correlation.h"
+#include "analysis/histogram.h"
+#include "analysis/pair_correlation.h"
 #include "tools/analyze/report.h"
-#include "tools/analyze/structure.h"
+#include "analysis/structure.h"
 
 namespace kiln::analyze {
 
@@ -47,7 +47,7 @@ const std::vector<Column> columns{{"time", "time", "s"},
                                   {"fabric_anisotropy", "anisotropy", ""}};
 
 struct Options {
-    Measure measure = Measure::automatic;
+    analysis::Measure measure = analysis::Measure::automatic;
     double probe = 0.0;  // m; 0: the mean diameter
     std::size_t bins = 0;
     bool correlation = false;
@@ -55,19 +55,21 @@ struct Options {
     std::size_t correlation_bins = 100;
 
     void add_to(CLI::App& app) {
-        static const std::map<std::string, Measure> measures{
-            {"auto", Measure::automatic}, {"box", Measure::box}, {"inner", Measure::inner}, {"envelope", Measure::envelope}};
+        static const std::map<std::string, analysis::Measure> measures{{"auto", analysis::Measure::automatic},
+                                                                       {"box", analysis::Measure::box},
+                                                                       {"inner", analysis::Measure::inner},
+                                                                       {"envelope", analysis::Measure::envelope}};
         app.add_option_function<std::string>(
                "--measure", [this](const std::string& name) { measure = measures.at(name); },
                "volume that the density refers to; auto: box for a periodic state, else inner")
             ->check(CLI::IsMember(measures))
             ->default_str("auto");
-        cli::add_quantity(app, "--probe-radius", probe, cli::Dimension::length, "radius of the ball that feels the envelope",
+        cli::add_quantity(app, "--probe-radius", probe, io::Dimension::length, "radius of the ball that feels the envelope",
                           "the mean diameter");
         app.add_option("--bins", bins, "also histograms of diameters and overlaps, with so many bins")
             ->check(CLI::Range(1, 1000000));
         auto* wanted = app.add_flag("--correlation", correlation, "also the pair correlation function g(r)");
-        cli::add_quantity(app, "--range", range, cli::Dimension::length, "largest distance of g(r)", "four mean diameters")
+        cli::add_quantity(app, "--range", range, io::Dimension::length, "largest distance of g(r)", "four mean diameters")
             ->needs(wanted);
         app.add_option("--shells", correlation_bins, "number of shells of g(r)")
             ->check(CLI::Range(1, 1000000))
@@ -82,14 +84,14 @@ struct Options {
 };
 
 void add_contacts(Json& result, const State& state, std::size_t bins) {
-    const std::vector<Pair> contacts = contacts_of(state);
+    const std::vector<Pair> contacts = analysis::contacts_of(state);
     const std::size_t particles = state.particles.size();
     const auto count = static_cast<double>(particles);
-    const std::vector<double> overlaps = overlap_ratios(state, contacts);
-    const std::vector<std::size_t> clusters = cluster_sizes(particles, contacts);
-    const Eigen::Matrix3d fabric = fabric_tensor(state, contacts);
+    const std::vector<double> overlaps = analysis::overlap_ratios(state, contacts);
+    const std::vector<std::size_t> clusters = analysis::cluster_sizes(particles, contacts);
+    const Eigen::Matrix3d fabric = analysis::fabric_tensor(state, contacts);
     const Vec3 principal = fabric.selfadjointView<Eigen::Lower>().eigenvalues();
-    const Json overlap = spread_of(overlaps);
+    const Json overlap = analysis::spread_of(overlaps);
     result["coordination_number"] = particles == 0 ? 0.0 : 2.0 * static_cast<double>(contacts.size()) / count;
     result["mean_overlap_ratio"] = overlap.is_null() ? Json(0.0) : overlap["mean"];
     result["overlap_ratio"] = overlap;
@@ -101,11 +103,11 @@ void add_contacts(Json& result, const State& state, std::size_t bins) {
     result["fabric_tensor"] = Json::array();
     for (int row = 0; row < 3; ++row) result["fabric_tensor"].push_back({fabric(row, 0), fabric(row, 1), fabric(row, 2)});
     result["fabric_anisotropy"] = principal.maxCoeff() - principal.minCoeff();
-    if (bins > 0) result["overlap_histogram"] = histogram_of(overlaps, bins, 0.0);
+    if (bins > 0) result["overlap_histogram"] = analysis::histogram_of(overlaps, bins, 0.0);
 }
 
 Json density_of(const State& state, const Options& options) {
-    const Density density = measured_density(state, options.measure, options.probe);
+    const analysis::Density density = analysis::measured_density(state, options.measure, options.probe);
     Json result{{"format", "dem-density"},
                 {"version", io::format_version},
                 {"time", state.time},
@@ -113,15 +115,15 @@ Json density_of(const State& state, const Options& options) {
                 {"measure", density.measure},
                 {"particles", state.particles.size()}};
     if (density.measure == "envelope")
-        result["probe_radius"] = options.probe > 0.0 ? options.probe : mean_diameter(state.particles);
+        result["probe_radius"] = options.probe > 0.0 ? options.probe : analysis::mean_diameter(state.particles);
     add_contacts(result, state, options.bins);
     std::vector<double> diameters;
     for (const double radius : state.particles.radius) diameters.push_back(2.0 * radius);
-    result["diameter"] = spread_of(diameters);
-    if (options.bins > 0) result["diameter_histogram"] = histogram_of(diameters, options.bins, 0.0);
+    result["diameter"] = analysis::spread_of(diameters);
+    if (options.bins > 0) result["diameter_histogram"] = analysis::histogram_of(diameters, options.bins, 0.0);
     if (options.correlation && state.particles.size() > 0) {
-        const double range = options.range > 0.0 ? options.range : 4.0 * mean_diameter(state.particles);
-        const PairCorrelation found = pair_correlation(state, range, options.correlation_bins);
+        const double range = options.range > 0.0 ? options.range : 4.0 * analysis::mean_diameter(state.particles);
+        const analysis::PairCorrelation found = analysis::pair_correlation(state, range, options.correlation_bins);
         result["pair_correlation"] = {{"distance", found.distance}, {"g", found.g}, {"centres", found.centres}};
     }
     return result;

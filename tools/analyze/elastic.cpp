@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/bond_model.h"
+#include "tools/common/bond_model.h"
 #include "io/state_io.h"
 #include "mechanics/elastic_tensor.h"
 #include "tools/analyze/analyze.h"

@@ -8,9 +8,9 @@
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/fit_points.h"
-#include "tools/analyze/laws.h"
+#include "analysis/law_fit.h"
 #include "tools/analyze/report.h"
-#include "tools/analyze/student.h"
+#include "analysis/student.h"
 
 namespace kiln::analyze {
 
@@ -63,15 +63,16 @@ Json matrix_json(const Eigen::MatrixXd& matrix) {
 }
 
 /// The law, its 95 % intervals and the curves of the literature at densities from the lowest of the points to 1.
-void add_band(Json& result, const Law& law, const Fit& fit, const Points& points, const std::vector<double>& weight) {
+void add_band(Json& result, const physics::PorosityLaw& law, const analysis::Fit& fit, const Points& points,
+              const std::vector<double>& weight) {
     constexpr int steps = 40;
-    const double t = fit.covariance ? student_factor(fit.degrees_of_freedom, confidence) : 0.0;
+    const double t = fit.covariance ? analysis::student_factor(fit.degrees_of_freedom, confidence) : 0.0;
     double mean_weight = 0.0;
     for (const double each : weight) mean_weight += each / static_cast<double>(weight.size());
     const double lowest = 0.05 * std::floor(20.0 * (1.0 - std::ranges::max(points.porosity)));
     Json density = Json::array(), modulus = Json::array(), certain = Json::array(), predicted = Json::array(),
          curves = Json::array();
-    for (const Reference& reference : references())
+    for (const physics::ReferenceCurve& reference : physics::reference_curves())
         curves.push_back({{"name", reference.name},
                           {"formula", reference.formula},
                           {"source", reference.source},
@@ -81,13 +82,13 @@ void add_band(Json& result, const Law& law, const Fit& fit, const Points& points
         const double value = law.modulus(porosity, fit.parameters);
         density.push_back(1.0 - porosity);
         modulus.push_back(value);
-        for (std::size_t curve = 0; curve < references().size(); ++curve) {
-            const Reference& reference = references()[curve];
+        for (std::size_t curve = 0; curve < physics::reference_curves().size(); ++curve) {
+            const physics::ReferenceCurve& reference = physics::reference_curves()[curve];
             curves[curve]["young_modulus"].push_back(porosity <= reference.largest_porosity ? Json(reference.modulus(porosity))
                                                                                             : Json());
         }
         if (!fit.covariance) continue;
-        const double error = error_at(law, fit, porosity);
+        const double error = analysis::error_at(law, fit, porosity);
         const double wide = std::sqrt(error * error + fit.scatter / mean_weight);
         certain.push_back({value - t * error, value + t * error});
         predicted.push_back({value - t * wide, value + t * wide});
@@ -99,7 +100,7 @@ void add_band(Json& result, const Law& law, const Fit& fit, const Points& points
 }
 
 /// Measurements beside the fit, and how far they lie from it: the root of the mean square of measured over law minus 1.
-Json overlay_json(const Law& law, const Fit& fit, const Points& data) {
+Json overlay_json(const physics::PorosityLaw& law, const analysis::Fit& fit, const Points& data) {
     double squares = 0.0;
     for (std::size_t point = 0; point < data.modulus.size(); ++point) {
         const double off = data.modulus[point] / law.modulus(data.porosity[point], fit.parameters) - 1.0;
@@ -108,7 +109,7 @@ Json overlay_json(const Law& law, const Fit& fit, const Points& data) {
     return {{"points", points_json(data)}, {"rms_deviation", std::sqrt(squares / static_cast<double>(data.modulus.size()))}};
 }
 
-Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_errors) {
+Json fit_json(const physics::PorosityLaw& law, const analysis::Fit& fit, const Points& points, bool by_errors) {
     Json result{{"format", "dem-fit"},
                 {"version", io::format_version},
                 {"law", law.name},
@@ -122,7 +123,7 @@ Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_erro
         errors[name] = intervals[name] = Json();
         if (!fit.covariance) continue;
         const double error = std::sqrt((*fit.covariance)(row, row)),
-                     reach = student_factor(fit.degrees_of_freedom, confidence) * error;
+                     reach = analysis::student_factor(fit.degrees_of_freedom, confidence) * error;
         errors[name] = error;
         intervals[name] = {fit.parameters[k] - reach, fit.parameters[k] + reach};
     }
@@ -139,12 +140,12 @@ Json fit_json(const Law& law, const Fit& fit, const Points& points, bool by_erro
     return result;
 }
 
-std::string error_key(const Parameter& parameter) { return parameter.name + " error"; }
+std::string error_key(const physics::Parameter& parameter) { return parameter.name + " error"; }
 
-std::vector<Column> columns_of(const std::vector<const Law*>& wanted) {
+std::vector<Column> columns_of(const std::vector<const physics::PorosityLaw*>& wanted) {
     std::vector<Column> columns{{"law", "law", ""}, {"formula", "formula", ""}};
-    for (const Law* law : wanted)
-        for (const Parameter& parameter : law->parameters) {
+    for (const physics::PorosityLaw* law : wanted)
+        for (const physics::Parameter& parameter : law->parameters) {
             if (std::ranges::find(columns, parameter.name, &Column::key) != columns.end()) continue;
             columns.push_back({parameter.name, parameter.name, parameter.unit});
             columns.push_back({error_key(parameter), "its error", parameter.unit});
@@ -155,28 +156,29 @@ std::vector<Column> columns_of(const std::vector<const Law*>& wanted) {
 }
 
 /// The result with what columns_of() asks for at its top level.
-Json table_row(const Law& law, Json result) {
-    for (const Parameter& parameter : law.parameters) result[error_key(parameter)] = result["standard_errors"][parameter.name];
+Json table_row(const physics::PorosityLaw& law, Json result) {
+    for (const physics::Parameter& parameter : law.parameters)
+        result[error_key(parameter)] = result["standard_errors"][parameter.name];
     result["count"] = result["points"].size();
     return result;
 }
 
 /// The laws of a list such as "knudsen,power", or of "all".
-std::vector<const Law*> laws_of(const std::string& names) {
-    std::vector<const Law*> wanted;
+std::vector<const physics::PorosityLaw*> laws_of(const std::string& names) {
+    std::vector<const physics::PorosityLaw*> wanted;
     if (names == "all")
-        for (const Law& law : laws())
+        for (const physics::PorosityLaw& law : physics::porosity_laws())
             if (!law.same_as_another) wanted.push_back(&law);
     for (std::size_t start = 0; names != "all" && start <= names.size();) {
         const std::size_t end = std::min(names.find(',', start), names.size());
-        wanted.push_back(&law_named(names.substr(start, end - start)));
+        wanted.push_back(&physics::porosity_law(names.substr(start, end - start)));
         start = end + 1;
     }
     return wanted;
 }
 
 struct Options {
-    std::vector<const Law*> wanted{&laws().front()};
+    std::vector<const physics::PorosityLaw*> wanted{&physics::porosity_laws().front()};
     Weights weights = Weights::automatic;
     std::string data;
     bool table = false;
@@ -188,7 +190,7 @@ void Options::add_to(CLI::App& app) {
     static const std::map<std::string, Weights> weightings{
         {"auto", Weights::automatic}, {"errors", Weights::errors}, {"equal", Weights::equal}};
     std::string known;
-    for (const Law& law : laws()) known += law.name + ": " + law.formula + "; ";
+    for (const physics::PorosityLaw& law : physics::porosity_laws()) known += law.name + ": " + law.formula + "; ";
     app.add_option_function<std::string>(
            "--law",
            [this](const std::string& names) {
@@ -213,15 +215,15 @@ void Options::add_to(CLI::App& app) {
 }
 
 /// Results of all wanted laws, the best first where there are several.
-std::vector<std::pair<const Law*, Json>> results_of(const Options& options, const Points& points, bool quiet) {
+std::vector<std::pair<const physics::PorosityLaw*, Json>> results_of(const Options& options, const Points& points, bool quiet) {
     const bool by_errors = weighted(points, options.weights);
     std::vector<double> weight(points.error.size(), 1.0);
     if (by_errors) std::ranges::transform(points.error, weight.begin(), [](double error) { return 1.0 / (error * error); });
     Points data;
     if (!options.data.empty()) add_table_points(data, options.data);
-    std::vector<std::pair<const Law*, Json>> results;
-    for (const Law* law : options.wanted) {
-        const Fit found = fit_law(*law, points.porosity, points.modulus, weight);
+    std::vector<std::pair<const physics::PorosityLaw*, Json>> results;
+    for (const physics::PorosityLaw* law : options.wanted) {
+        const analysis::Fit found = analysis::fit_law(*law, points.porosity, points.modulus, weight);
         if (found.degrees_of_freedom == 0 && !quiet)
             cli::warn("analyze fit", "as many points as parameters: the standard errors are unknown");
         Json result = fit_json(*law, found, points, by_errors);

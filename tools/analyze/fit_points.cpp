@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/tool.h"
+#include "tools/common/tool.h"
 #include "io/files.h"
-#include "tools/analyze/csv.h"
+#include "io/csv.h"
 #include "tools/analyze/results.h"
 
 namespace kiln::analyze {
@@ -22,15 +22,15 @@ void add_point(Points& points, const io::Document& document) {
 }
 
 void add_table_points(Points& points, const std::string& file) {
-    const CsvTable table(file);
-    std::optional<std::vector<double>> porosity = table.column({"porosity"}, cli::Dimension::none);
+    const io::CsvTable table(file);
+    std::optional<std::vector<double>> porosity = table.column({"porosity"}, io::Dimension::none);
     if (!porosity) {
-        porosity = table.required({"relative_density", "relative density", "density"}, cli::Dimension::none);
+        porosity = table.required({"relative_density", "relative density", "density"}, io::Dimension::none);
         for (double& value : *porosity) value = 1.0 - value;
     }
     const std::vector<double> modulus =
-        table.required({"young_modulus", "young's modulus", "young modulus", "modulus", "e (", "e_"}, cli::Dimension::pressure);
-    const auto error = table.column({"standard_error", "standard error", "error"}, cli::Dimension::pressure);
+        table.required({"young_modulus", "young's modulus", "young modulus", "modulus", "e (", "e_"}, io::Dimension::pressure);
+    const auto error = table.column({"standard_error", "standard error", "error"}, io::Dimension::pressure);
     for (std::size_t row = 0; row < modulus.size(); ++row) {
         const std::string place = file + ", row " + std::to_string(row + 1);
         if (!((*porosity)[row] >= 0.0 && (*porosity)[row] < 1.0))
@@ -52,7 +52,7 @@ Points read_points(const std::vector<std::string>& files) {
         while (const auto document = input.next()) add_point(points, *document);
     };
     for (const std::string& file : files) {
-        if (!is_csv(file)) {
+        if (!io::is_csv(file)) {
             streams.push_back(file);
             continue;
         }

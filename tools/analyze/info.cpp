@@ -5,7 +5,7 @@
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/report.h"
-#include "tools/analyze/structure.h"
+#include "analysis/structure.h"
 
 namespace kiln::analyze {
 
@@ -43,7 +43,7 @@ Json state_info(io::Document document) {
     if (document.has_bonds) arrays["bonds"] = arrays_json(document.bonds);
     const Json box = document.header["box"];
     const State state = io::state_from(std::move(document));
-    const Density density = measured_density(state);
+    const analysis::Density density = analysis::measured_density(state);
     entry["time"] = state.time;
     if (state.temperature) entry["temperature"] = *state.temperature;
     entry["relative_density"] = density.value ? Json(*density.value) : Json();

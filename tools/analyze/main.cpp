@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/tool.h"
+#include "tools/common/tool.h"
 #include "tools/analyze/analyze.h"
 
 namespace {

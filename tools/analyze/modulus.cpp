@@ -3,16 +3,16 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cli/units.h"
+#include "tools/common/quantity_options.h"
 #include "io/state_io.h"
 #include "physics/bending.h"
 #include "tools/analyze/analyze.h"
-#include "tools/analyze/csv.h"
-#include "tools/analyze/line_fit.h"
+#include "io/csv.h"
+#include "analysis/line_fit.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
-#include "tools/analyze/student.h"
-#include "tools/analyze/unloading.h"
+#include "analysis/student.h"
+#include "analysis/unloading.h"
 
 namespace kiln::analyze {
 
@@ -43,7 +43,7 @@ const std::vector<Column> columns{{"relative_density", "relative density", ""}, 
                                   {"bond_law", "bond law", ""},                 {"method", "method", ""}};
 
 struct Options {
-    Window window;
+    analysis::Window window;
     std::optional<double> span, width, height;  // m
     std::optional<double> density, poisson_ratio;
     double compliance = 0.0;  // of machine and fixture, m/N
@@ -53,13 +53,13 @@ struct Options {
 };
 
 /// An option that stays empty unless it is given, and must be positive then.
-void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, cli::Dimension dimension,
+void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, io::Dimension dimension,
                   const std::string& help) {
-    const std::string known = cli::known_units(dimension);
+    const std::string known = io::known_units(dimension);
     app.add_option_function<std::string>(
            name,
            [&target, name, dimension](const std::string& text) {
-               target = cli::parse_quantity(text, dimension);
+               target = cli::parsed(name, [&] { return io::parse_quantity(text, dimension); });
                if (!(*target > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
            },
            help + (known.empty() ? "" : " [" + known + "]"))
@@ -67,9 +67,10 @@ void add_optional(CLI::App& app, const std::string& name, std::optional<double>&
 }
 
 void Options::add_to(CLI::App& app) {
-    using cli::Dimension;
+    using io::Dimension;
     app.add_option_function<std::string>(
-           "--window", [this](const std::string& text) { window = parse_window(text); },
+           "--window",
+           [this](const std::string& text) { window = cli::parsed("--window", [&] { return analysis::parse_window(text); }); },
            "force window of the unloading, UPPER:LOWER as shares of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
         ->default_str("5/6:1/3");
     add_optional(app, "--span", span, Dimension::length, "distance between the supports");
@@ -89,18 +90,18 @@ void Options::add_to(CLI::App& app) {
 
 /// The CSV of an experiment as the document that bend would have written.
 io::Document test_from_csv(const std::string& file, const Options& options) {
-    const CsvTable table(file);
+    const io::CsvTable table(file);
     io::Document document;
     document.place = file;
-    const auto deflection = table.required({"deflection", "displacement", "durchbiegung"}, cli::Dimension::length);
-    const auto punch = table.column({"punch", "travel", "crosshead"}, cli::Dimension::length);
+    const auto deflection = table.required({"deflection", "displacement", "durchbiegung"}, io::Dimension::length);
+    const auto punch = table.column({"punch", "travel", "crosshead"}, io::Dimension::length);
     document.header = {{"format", "dem-bend"},
                        {"method", "experiment"},
                        {"poisson_ratio", options.poisson_ratio.value_or(0.23)},  // alumina
                        {"curve",
                         {{"deflection", deflection},
                          {"punch", punch ? *punch : deflection},
-                         {"force", table.required({"force", "load", "kraft"}, cli::Dimension::force)}}}};
+                         {"force", table.required({"force", "load", "kraft"}, io::Dimension::force)}}}};
     return document;
 }
 
@@ -121,18 +122,18 @@ Curve curve_of(const io::Document& document) {
 }
 
 /// Force against deflection in the window of the last unloading, and how many points that are.
-std::pair<Line, std::size_t> unloading_line(const Curve& curve, const Options& options, const std::string& place) {
-    const auto branch = last_unloading(curve.punch);
+std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const Options& options, const std::string& place) {
+    const auto branch = analysis::last_unloading(curve.punch);
     if (!branch) throw Error(place + ": the curve has no unloading");
     std::vector<double> deflection, force;
-    for (const std::size_t point : points_in(curve.force, *branch, options.window)) {
+    for (const std::size_t point : analysis::points_in(curve.force, *branch, options.window)) {
         deflection.push_back(curve.deflection[point] - options.compliance * curve.force[point]);
         force.push_back(curve.force[point]);
     }
     if (force.size() < 2)
         throw Error(place + ": the last unloading has " + std::to_string(force.size()) +
                     " points in the window of forces, wanted two or more; give a wider --window");
-    const Line line = fit_line(deflection, force);
+    const analysis::Line line = analysis::fit_line(deflection, force);
     if (!(line.slope > 0.0) || !std::isfinite(line.slope))
         throw Error(place + ": the force does not grow with the deflection in the last unloading" +
                     (options.compliance > 0.0 ? ", less --compliance" : ""));
@@ -142,7 +143,7 @@ std::pair<Line, std::size_t> unloading_line(const Curve& curve, const Options& o
 /// A size of the specimen: the option's, else the document's.
 double size_of(const io::Document& document, const std::string& key, const std::optional<double>& given) {
     if (given) return *given;
-    if (is_csv(document.place) && !document.header.contains(key))
+    if (io::is_csv(document.place) && !document.header.contains(key))
         throw Error(document.place + ": --" + key + " is needed with a CSV");
     return positive_at(document, key);
 }
@@ -153,7 +154,7 @@ Json modulus_of(const io::Document& document, const Options& options) {
     const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
     const double poisson_ratio = options.poisson_ratio.value_or(number_at(document, "poisson_ratio", -1.0));
     Json density = options.density ? Json(*options.density) : Json();
-    if (!options.density && !is_csv(document.place)) density = positive_at(document, "relative_density");
+    if (!options.density && !io::is_csv(document.place)) density = positive_at(document, "relative_density");
     const auto [line, points] = unloading_line(curve_of(document), options, document.place);
     const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio) : 1.0;
     const double factor = physics::bending_modulus(1.0, span, width, height, poisson_ratio) /
@@ -161,7 +162,7 @@ Json modulus_of(const io::Document& document, const Options& options) {
     const double modulus = factor * line.slope, error = factor * line.slope_error;
     Json interval;
     if (std::isfinite(error)) {
-        const double reach = student_factor(points - 2, confidence) * error;
+        const double reach = analysis::student_factor(points - 2, confidence) * error;
         interval = {modulus - reach, modulus + reach};
     }
     Json result{{"format", "dem-modulus"},
@@ -175,7 +176,7 @@ Json modulus_of(const io::Document& document, const Options& options) {
                 {"compliance", options.compliance},
                 {"window", {options.window.upper, options.window.lower}},
                 {"points", points}};
-    if (is_csv(document.place)) result["source"] = std::filesystem::path(document.place).filename().string();
+    if (io::is_csv(document.place)) result["source"] = std::filesystem::path(document.place).filename().string();
     for (const char* key : {"bond_law", "method", "history"})
         if (document.header.contains(key)) result[key] = document.header[key];
     return result;

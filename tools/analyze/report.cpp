@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "tools/analyze/csv.h"
+#include "io/csv.h"
 
 namespace kiln::analyze {
 
@@ -88,7 +88,7 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
     };
     std::vector<std::string> streams;  // between two tables
     for (const std::string& file : common.files) {
-        if (!from_table || !is_csv(file)) {
+        if (!from_table || !io::is_csv(file)) {
             streams.push_back(file);
             continue;
         }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/tool.h"
+#include "tools/common/tool.h"
 #include "io/files.h"
 
 namespace kiln::analyze {

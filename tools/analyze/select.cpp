@@ -4,11 +4,11 @@
 #include <limits>
 #include <memory>
 
-#include "cli/units.h"
+#include "tools/common/quantity_options.h"
 #include "tools/analyze/analyze.h"
-#include "tools/analyze/interpolate.h"
+#include "analysis/interpolate.h"
 #include "tools/analyze/report.h"
-#include "tools/analyze/structure.h"
+#include "analysis/structure.h"
 
 namespace kiln::analyze {
 
@@ -35,7 +35,7 @@ struct Options {
 
     void add_to(CLI::App& app) {
         auto* by_density = app.add_option("--density", density, "relative densities, plain numbers separated by commas");
-        auto* by_time = cli::add_quantities(app, "--time", time, cli::Dimension::time, "times, separated by commas");
+        auto* by_time = cli::add_quantities(app, "--time", time, io::Dimension::time, "times, separated by commas");
         auto* by_index = app.add_option("--index", index, "places in the stream, from 1, separated by commas");
         by_density->delimiter(',')->allow_extra_args(false)->excludes(by_time)->excludes(by_index);
         by_index->delimiter(',')->allow_extra_args(false)->check(CLI::PositiveNumber)->excludes(by_time);
@@ -58,7 +58,7 @@ struct Options {
 
     /// What the wanted values are compared with; nothing if the state does not have it.
     std::optional<double> value_of(const State& state, std::size_t number) const {
-        if (!density.empty()) return measured_density(state).value;
+        if (!density.empty()) return analysis::measured_density(state).value;
         if (!time.empty()) return state.time;
         return static_cast<double>(number);
     }
@@ -92,16 +92,16 @@ struct Place {
 /// box.
 State between(const Place& first, const Place& second, double wanted, const Options& options) {
     double share = (wanted - first.value) / (second.value - first.value);
-    if (options.density.empty() || measured_density(*first.state).measure != "box")
-        return interpolated(*first.state, *second.state, share);
+    if (options.density.empty() || analysis::measured_density(*first.state).measure != "box")
+        return analysis::interpolated(*first.state, *second.state, share);
     constexpr int halvings = 40;  // 1e-12 of the way
     double low = 0.0, high = 1.0;
     for (int halving = 0; halving < halvings; ++halving) {
-        const double reached = relative_density(interpolated(*first.state, *second.state, share));
+        const double reached = relative_density(analysis::interpolated(*first.state, *second.state, share));
         ((reached < wanted) == (first.value < second.value) ? low : high) = share;
         share = 0.5 * (low + high);
     }
-    return interpolated(*first.state, *second.state, share);
+    return analysis::interpolated(*first.state, *second.state, share);
 }
 
 void note_crossings(std::vector<Choice>& choices, const Options& options, const std::optional<Place>& before, const Place& now) {
@@ -110,7 +110,8 @@ void note_crossings(std::vector<Choice>& choices, const Options& options, const 
         const bool crossed = before && (before->value - choice.wanted) * (now.value - choice.wanted) < 0.0;
         if (choice.state || !(at_end || crossed)) continue;
         State state = at_end ? *now.state : between(*before, now, choice.wanted, options);
-        const double value = options.density.empty() ? choice.wanted : measured_density(state).value.value_or(choice.wanted);
+        const double value =
+            options.density.empty() ? choice.wanted : analysis::measured_density(state).value.value_or(choice.wanted);
         choice = {choice.wanted, value, 0.0, std::make_shared<const State>(std::move(state))};
     }
 }

@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
-#include "cli/bond_model.h"
-#include "cli/units.h"
+#include "tools/common/bond_model.h"
+#include "tools/common/quantity_options.h"
 
 namespace kiln::bend {
 
@@ -37,7 +37,7 @@ constexpr const char* footer =
 }  // namespace
 
 void Options::add_to(CLI::App& app) {
-    using cli::Dimension;
+    using io::Dimension;
     app.description(description);
     app.footer(footer);
     cli::add_quantity(app, "--span", span, Dimension::length, "distance between the supports", "0.8 of the bar's length");
@@ -97,9 +97,9 @@ void Options::check(const CLI::App& app) const {
 }
 
 void Options::add_strength(CLI::App& app) {
-    cli::add_quantity(app, "--tensile-strength", tensile_strength, cli::Dimension::pressure,
+    cli::add_quantity(app, "--tensile-strength", tensile_strength, io::Dimension::pressure,
                       "bonds break where tension and bending together reach this stress; the bar is loaded until it fails", "none");
-    cli::add_quantity(app, "--shear-strength", shear_strength, cli::Dimension::pressure, "the same for shear and torsion together",
+    cli::add_quantity(app, "--shear-strength", shear_strength, io::Dimension::pressure, "the same for shear and torsion together",
                       "none");
     app.add_option("--until", until,
                    "the test to failure ends where the force has fallen to this share of its greatest (plain number)")
@@ -114,7 +114,7 @@ void Options::add_dynamic(CLI::App& app) {
            "work")
         ->check(CLI::IsMember({"static", "dynamic"}))
         ->default_str("static");
-    cli::add_quantity(app, "--punch-velocity", punch_velocity, cli::Dimension::velocity, "speed of the punch, dynamic",
+    cli::add_quantity(app, "--punch-velocity", punch_velocity, io::Dimension::velocity, "speed of the punch, dynamic",
                       "the greatest deflection in 20 of the bar's own periods");
     app.add_option("--damping", damping, "share of the unbalanced force that brakes each particle, dynamic (plain number below 1)")
         ->check(CLI::Range(0.0, 0.99))

@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "cli/progress.h"
-#include "cli/tool.h"
+#include "tools/common/progress.h"
+#include "tools/common/tool.h"
 #include "io/files.h"
 #include "tools/bondify/options.h"
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
-#include "cli/units.h"
+#include "tools/common/quantity_options.h"
 
 namespace kiln::bondify {
 
@@ -41,8 +41,8 @@ void add_options(CLI::App& app, bonding::Options& options) {
     app.footer(footer);
     add_choice(app, "--method", options.method, {{"exact", Method::exact}, {"sweep", Method::sweep}}, "exact",
                                            "exact: the limit of small decrements; sweep: Eq. 2-3 as they stand, slow");
-    const auto* decrement_option =
-        cli::add_quantity(app, "--decrement", options.decrement, cli::Dimension::length, "what a sweep takes from a radius", "0.0001nm");
+    const auto* decrement_option = cli::add_quantity(app, "--decrement", options.decrement, io::Dimension::length,
+                                                     "what a sweep takes from a radius", "0.0001nm");
     add_choice(app, "--sharing", options.sharing, {{"pair", Sharing::pair}, {"particle", Sharing::particle}}, "pair",
                "pair: a particle with k overlaps loses k decrements a sweep (Eq. 2); particle: it loses one decrement a sweep. "
                "Either way its k bonds share what it loses equally");

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "cli/progress.h"
+#include "tools/common/progress.h"
 #include "core/contacts.h"
 #include "io/files.h"
 #include "io/state_io.h"
@@ -14,6 +14,8 @@
 #include "tools/sinter/green_options.h"
 
 namespace kiln::sinter {
+
+using packing::Method, packing::PackingOptions, packing::Relaxation, packing::RelaxationOptions;
 
 namespace {
 
@@ -77,7 +79,7 @@ int green(int argc, char** argv) {
     io::Output output(options.common.output, options.common.text);
 
     cli::Progress progress("sinter green", options.common);
-    State state = pack(options.packing, [&](const Relaxation& relaxation) {
+    State state = packing::pack(options.packing, [&](const Relaxation& relaxation) {
         show(progress, relaxation);
         return !cli::stop_requested();
     });

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/units.h"
+#include "tools/common/quantity_options.h"
 
 namespace kiln::sinter {
+
+using packing::DiameterList, packing::Method;
 
 namespace {
 
@@ -29,7 +31,8 @@ std::array<double, 3> parse_aspect(const std::string& text) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t colon = axis < 2 ? text.find(':', at) : text.size();
         if (colon == std::string::npos) refuse("--aspect: '" + text + "' is not three numbers such as 4:1:1");
-        aspect[axis] = cli::parse_quantity(text.substr(at, colon - at), cli::Dimension::none);
+        aspect[axis] =
+            cli::parsed("--aspect", [&] { return io::parse_quantity(text.substr(at, colon - at), io::Dimension::none); });
         if (!(aspect[axis] > 0.0)) refuse("--aspect: '" + text + "' has an edge that is not above zero");
         at = colon + 1;
     }
@@ -39,7 +42,7 @@ std::array<double, 3> parse_aspect(const std::string& text) {
 }  // namespace
 
 void GreenOptions::add_to(CLI::App& app) {
-    using cli::add_quantity, cli::Dimension;
+    using cli::add_quantity, io::Dimension;
     common.add_to(app, false);
     app.add_option("-n,--particles", packing.particles, "Number of particles; with file:LIST as many as it has lines")
         ->capture_default_str()
@@ -61,7 +64,10 @@ void GreenOptions::add_to(CLI::App& app) {
         ->default_str("loose")
         ->type_name("METHOD");
     app.add_option_function<std::string>(
-           "--compact-to", [this](const std::string& text) { packing.compact_to = cli::parse_quantity(text, Dimension::none); },
+           "--compact-to",
+           [this](const std::string& text) {
+               packing.compact_to = cli::parsed("--compact-to", [&] { return io::parse_quantity(text, Dimension::none); });
+           },
            "Relative density to shrink all distances between centres to in the end, radii unchanged")
         ->type_name("NUMBER");
     add_quantity(app, "--swell", packing.swell, Dimension::none,
@@ -96,7 +102,7 @@ void GreenOptions::complete(const CLI::App& app) {
         refuse(soft ? "--swell does not go with --method soft" : "--mean-overlap goes with --method soft only");
     if (!(diameter > 0.0)) refuse("--diameter: the diameter is not above zero");
     if (distribution != "monosize" && app.count("--diameter") > 0) refuse("--diameter goes with --distribution monosize only");
-    packing.distribution = parse_distribution(distribution, diameter);
+    packing.distribution = cli::parsed("--distribution", [this] { return packing::parse_distribution(distribution, diameter); });
     if (const auto* list = std::get_if<DiameterList>(&packing.distribution); list && app.count("--particles") == 0)
         packing.particles = static_cast<std::int64_t>(list->diameters.size());
     if (packing.particles < 1 || packing.particles > std::numeric_limits<std::int32_t>::max())

@@ -1,14 +1,14 @@
 // green_options.h: the options of `sinter green`.
 #pragma once
 
-#include "cli/tool.h"
-#include "tools/sinter/green_packing.h"
+#include "packing/packing.h"
+#include "tools/common/tool.h"
 
 namespace kiln::sinter {
 
 struct GreenOptions {
     cli::Common common;
-    PackingOptions packing;
+    packing::PackingOptions packing;
     double diameter = 100e-9;  // m, of monosize particles
     std::string distribution = "monosize";
     std::string material = "alumina";

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "checkpoint.h"
-#include "cli/tool.h"
+#include "tools/common/tool.h"
 #include "green.h"
 #include "run.h"
 

@@ -4,14 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/units.h"
-#include "tools/sinter/schedule_text.h"
+#include "tools/common/quantity_options.h"
+#include "io/schedule_text.h"
 
 namespace kiln::sinter {
 
 namespace {
 
-using cli::add_quantities, cli::add_quantity, cli::Dimension;
+using cli::add_quantities, cli::add_quantity, io::Dimension;
 
 constexpr const char* footer =
     "Reads states, sinters each, and writes a state at every wanted density or time; with --schedule alone, the state at its end.\n"
@@ -111,12 +111,12 @@ void Options::check(const std::string& output) const {
             "--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
     if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint wants an output file: -o FILE");
     if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume wants --checkpoint FILE");
-    if (!schedule.empty()) parse_schedule(schedule);
+    if (!schedule.empty()) cli::parsed("--schedule", [this] { return io::parse_schedule(schedule); });
 }
 
 sintering::SinteringSettings Options::settings(double start) const {
     sintering::SinteringSettings settings;
-    settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : parse_schedule(schedule).from(start);
+    settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : io::parse_schedule(schedule).from(start);
     settings.constants = constants;
     settings.faces = boundary == "free"       ? sintering::Faces::free
                      : boundary == "periodic" ? sintering::Faces::periodic

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "cli/tool.h"
+#include "tools/common/tool.h"
 #include "sintering/explicit_sintering.h"
 #include "sintering/implicit_sintering.h"
 #include "sintering/viscosity.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/progress.h"
+#include "tools/common/progress.h"
 #include "io/files.h"
 #include "options.h"
 #include "tools/sinter/checkpoint.h"

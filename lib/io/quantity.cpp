@@ -1,0 +1,107 @@
+// quantity.cpp: the table of units and the parser of quantities.
+#include "io/quantity.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "core/types.h"
+
+namespace kiln::io {
+
+namespace {
+
+struct Unit {
+    Dimension dimension;
+    const char* name;
+    double factor;         // SI value of one unit, times the divisor
+    double divisor = 1.0;  // exact where the factor would not be: 100nm is 1e-7 and not its neighbour
+    double offset = 0.0;   // SI value of zero units
+};
+
+constexpr double zero_celsius = 273.15;  // K, definition of the Celsius scale
+
+constexpr Unit units[] = {
+    {Dimension::length, "m", 1.0},
+    {Dimension::length, "cm", 1.0, 1e2},
+    {Dimension::length, "mm", 1.0, 1e3},
+    {Dimension::length, "um", 1.0, 1e6},
+    {Dimension::length, "nm", 1.0, 1e9},
+    {Dimension::area, "m2", 1.0},
+    {Dimension::area, "mm2", 1.0, 1e6},
+    {Dimension::volume, "m3", 1.0},
+    {Dimension::volume, "l", 1.0, 1e3},
+    {Dimension::time, "s", 1.0},
+    {Dimension::time, "ms", 1.0, 1e3},
+    {Dimension::time, "min", 60.0},
+    {Dimension::time, "h", 3600.0},
+    {Dimension::temperature, "K", 1.0},
+    {Dimension::temperature, "C", 1.0, 1.0, zero_celsius},
+    {Dimension::heating_rate, "K/s", 1.0},
+    {Dimension::heating_rate, "K/min", 1.0, 60.0},
+    {Dimension::heating_rate, "K/h", 1.0, 3600.0},
+    {Dimension::pressure, "Pa", 1.0},
+    {Dimension::pressure, "kPa", 1e3},
+    {Dimension::pressure, "MPa", 1e6},
+    {Dimension::pressure, "GPa", 1e9},
+    {Dimension::force, "N", 1.0},
+    {Dimension::force, "kN", 1e3},
+    {Dimension::force, "mN", 1.0, 1e3},
+    {Dimension::force, "uN", 1.0, 1e6},
+    {Dimension::force, "nN", 1.0, 1e9},
+    {Dimension::velocity, "m/s", 1.0},
+    {Dimension::velocity, "mm/s", 1.0, 1e3},
+    {Dimension::velocity, "um/s", 1.0, 1e6},
+    {Dimension::velocity, "nm/s", 1.0, 1e9},
+    {Dimension::surface_energy, "J/m2", 1.0},
+    {Dimension::surface_energy, "mJ/m2", 1.0, 1e3},
+    {Dimension::molar_energy, "J/mol", 1.0},
+    {Dimension::molar_energy, "kJ/mol", 1e3},
+    {Dimension::mass_density, "kg/m3", 1.0},
+    {Dimension::mass_density, "g/cm3", 1e3},
+    {Dimension::angle, "rad", 1.0},
+    {Dimension::angle, "deg", std::numbers::pi, 180.0},
+    {Dimension::diffusion_volume, "m3/s", 1.0},
+    {Dimension::compliance, "m/N", 1.0},
+    {Dimension::compliance, "mm/N", 1.0, 1e3},
+    {Dimension::compliance, "um/N", 1.0, 1e6},
+    {Dimension::compliance, "nm/N", 1.0, 1e9},
+    {Dimension::compliance, "mm/kN", 1.0, 1e6},
+};
+
+}  // namespace
+
+std::string known_units(Dimension dimension) {
+    std::string list;
+    for (const Unit& unit : units)
+        if (unit.dimension == dimension) list += (list.empty() ? "" : ", ") + std::string(unit.name);
+    return list;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension) {
+    const std::string given = std::string("'").append(text) + "'";
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc::result_out_of_range) throw TextError(given + " is out of the range of numbers");
+    if (error != std::errc() || !std::isfinite(number)) throw TextError(given + " is not a number");
+    std::string_view name = text.substr(static_cast<std::size_t>(end - text.data()));
+    while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
+    if (dimension == Dimension::none) {
+        if (!name.empty()) throw TextError(given + " has a unit where a plain number is wanted");
+        return number;
+    }
+    for (const Unit& unit : units)
+        if (unit.dimension == dimension && name == unit.name) {
+            const double value = number * unit.factor / unit.divisor + unit.offset;
+            if (!std::isfinite(value)) throw TextError(given + " is out of the range of numbers");
+            if (dimension == Dimension::temperature && value <= 0.0)
+                throw TextError(given + " is not above absolute zero");
+            return value;
+        }
+    const std::string problem = name.empty() ? " has no unit" : " has no unit of the right kind";
+    throw TextError(given + problem + "; known here: " + known_units(dimension));
+}
+
+}  // namespace kiln::io

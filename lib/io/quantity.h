@@ -1,0 +1,35 @@
+// quantity.h: quantities with units as people write them, such as 50nm, 1200C, 10K/min; a number without its unit is an error.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace kiln::io {
+
+enum class Dimension {
+    none,              // plain number
+    length,            // m
+    area,              // m2
+    volume,            // m3
+    time,              // s
+    temperature,       // K; C is converted
+    heating_rate,      // K/s
+    pressure,          // Pa
+    force,             // N
+    velocity,          // m/s
+    surface_energy,    // J/m2
+    molar_energy,      // J/mol
+    mass_density,      // kg/m3
+    angle,             // rad
+    diffusion_volume,  // m3/s, grain boundary width times diffusivity
+    compliance,        // m/N
+};
+
+/// SI value of a text such as "50nm". Upper and lower case count. Throws TextError that says what was given and which
+/// units are known.
+double parse_quantity(std::string_view text, Dimension dimension);
+
+/// The units of a dimension, for help texts: "m, mm, um, nm".
+std::string known_units(Dimension dimension);
+
+}  // namespace kiln::io

@@ -1,0 +1,158 @@
+// tool.cpp: common options, the one catch, signals, the history entry.
+#include "tools/common/tool.h"
+
+#include <CLI/CLI.hpp>
+#include <malloc.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <set>
+
+#include "io/files.h"
+
+namespace kiln::cli {
+
+namespace {
+
+volatile std::sig_atomic_t signal_seen = 0;
+
+void note_signal(int signal) { signal_seen = signal; }
+
+/// The first signal asks long loops to end and breaks off a wait for input; a second one ends the program at once.
+void watch_signals() {
+    struct sigaction action {};
+    action.sa_handler = note_signal;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // under nohup it stays ignored
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // these come back as errors of write
+}
+
+/// --help and --version: everything is said already.
+struct Finished {};
+
+/// Options that change where or how a result is written, not the result.
+constexpr std::array without_bearing{"--help",    "--version", "--config", "--output",     "--text",
+                                     "--quiet",   "--verbose", "--threads", "--history",   "--states",
+                                     "--resume",  "files",     "--checkpoint", "--checkpoint-every"};
+
+/// The text without line ends and what else a terminal would act on; names in it come from files.
+std::string one_line(std::string text) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+    return text;
+}
+
+/// Status of a run that ended in a signal, as a shell counts it; `usual` of one that did not.
+int status_after_signal(int usual) { return signal_seen == 0 ? usual : 128 + signal_seen; }
+
+}  // namespace
+
+void Common::add_to(CLI::App& app, bool reads) {
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.set_version_flag("--version", version);
+    app.set_config("--config", "", "Read options from a TOML file, such as: temperature = \"1200C\"")->type_name("FILE");
+    app.allow_config_extras(false);
+    app.get_formatter()->column_width(36);
+    if (reads) app.add_option("files", files, "Input streams; - or nothing is standard input")->type_name("FILE");
+    app.add_option("-o,--output", output, "Output file, written whole or not at all; - is standard output")
+        ->type_name("FILE")
+        ->default_str("-");
+    app.add_flag("--text", text, "Write text documents (JSON lines) instead of binary ones");
+    app.add_flag("-q,--quiet", quiet, "No progress and no warnings on standard error");
+    app.add_flag("-v,--verbose", verbose, "Say more on standard error; a JSON line a step when that is not a terminal");
+    app.add_option("--threads", threads, "Number of threads; the result does not depend on it")
+        ->check(CLI::Range(1, 1024))
+        ->default_str("all cores")
+        ->type_name("N");
+}
+
+void keep_freed_memory() {
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // bytes; the largest that glibc takes
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
+int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body) {
+    watch_signals();
+    keep_freed_memory();
+    const auto say = [&](const std::string& sentence) { std::cerr << tool << ": " << one_line(sentence) << "\n"; };
+    try {
+        const int status = body(argc, argv);
+        return status == done || status == interrupted ? status_after_signal(status) : status;
+    } catch (const Finished&) {
+        if (std::cout.flush()) return done;
+        say("standard output cannot be written");
+        return failed;
+    } catch (const CLI::FileError& error) {
+        say(error.what());
+        return failed;
+    } catch (const CLI::ParseError& error) {
+        say(std::string(error.what()) + "; see " + tool + " --help");
+        return wrong_usage;
+    } catch (const TextError& error) {
+        say(std::string(error.what()) + "; see " + tool + " --help");
+        return wrong_usage;
+    } catch (const io::ClosedPipe&) {
+        return closed_pipe;
+    } catch (const io::Interrupted&) {
+        return status_after_signal(interrupted);
+    } catch (const std::bad_alloc&) {
+        say("there is not enough memory");
+    } catch (const std::exception& error) {
+        say(error.what());
+    }
+    return failed;
+}
+
+void check_outputs(const std::vector<std::string>& names) {
+    namespace fs = std::filesystem;
+    std::set<fs::path> seen;
+    for (const std::string& name : names) {
+        std::error_code none;
+        if (name.empty() || (fs::exists(name, none) && !fs::is_regular_file(name, none))) continue;
+        if (!seen.insert(name == "-" ? fs::path(name) : fs::weakly_canonical(fs::absolute(name), none)).second)
+            throw CLI::ValidationError(name + ": two outputs of one run cannot have the same name");
+    }
+}
+
+void parse(CLI::App& app, int argc, char** argv, const Common& common) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        throw Finished();
+    } catch (const CLI::CallForVersion&) {
+        std::cout << app.get_name() << " (Kiln) " << version << "\n";
+        throw Finished();
+    }
+    if (common.threads > 0) omp_set_num_threads(common.threads);
+}
+
+Json history_entry(const std::string& tool, const CLI::App& app, const Json& summary) {
+    Json entry{{"tool", tool}, {"version", version}, {"arguments", Json::array()}};
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_positional() ? "files" : option->get_name();
+        const bool bears = std::find(without_bearing.begin(), without_bearing.end(), name) == without_bearing.end();
+        const bool switched_off = option->get_expected_min() == 0 && option->results() == std::vector<std::string>{"false"};
+        if (option->count() == 0 || !bears || switched_off) continue;
+        entry["arguments"].push_back(name);
+        std::string values;
+        for (const std::string& value : option->results()) values += (values.empty() ? "" : ",") + value;
+        if (option->get_expected_min() > 0) entry["arguments"].push_back(values);
+    }
+    if (const CLI::Option* seed = app.get_option_no_throw("--seed")) entry["seed"] = seed->as<std::uint64_t>();
+    entry["summary"] = summary;
+    return entry;
+}
+
+bool stop_requested() { return signal_seen != 0; }
+
+void warn(const std::string& tool, const std::string& sentence) { std::cerr << tool << ": warning: " << sentence << "\n"; }
+
+}  // namespace kiln::cli
