@@ -14,6 +14,7 @@
 namespace {
 
 using namespace kiln;
+using namespace kiln::linalg;
 using namespace kiln::mechanics;
 
 using Clock = std::chrono::steady_clock;

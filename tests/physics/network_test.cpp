@@ -11,6 +11,7 @@
 #include "tests/physics/relative.h"
 
 using namespace kiln;
+using namespace kiln::linalg;
 using namespace kiln::mechanics;
 using test::relative;
 
