@@ -40,7 +40,7 @@ void finish_partial(const std::string& name) {
         throw_system_error(name + ": cannot be renamed into place");
 }
 
-Input::Input(std::vector<std::string> files, bool (*stop)()) : files_(std::move(files)), stop_(stop) {
+Input::Input(std::vector<std::string> files, StopRequest stop) : files_(std::move(files)), stop_(std::move(stop)) {
     if (files_.empty()) files_.emplace_back("-");
 }
 
@@ -49,7 +49,7 @@ Input::~Input() {
 }
 
 std::optional<Document> Input::next() {
-    if (stop_ && stop_()) throw Interrupted();
+    throw_if_stopped(stop_);
     Document document;
     for (;;) {
         if (reader_ && reader_->next(document)) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/state.h"
+#include "core/stop.h"
 #include "io/document.h"
 
 namespace kiln::io {
@@ -15,10 +16,8 @@ namespace kiln::io {
 /// The reader of the stream went away; the tool ends silently.
 struct ClosedPipe : std::exception {};
 
-/// A signal broke off a wait for input or for room in a pipe.
-struct Interrupted : std::exception {};
-
-/// Turns errno into ClosedPipe, Interrupted, or Error "<sentence>: <cause>".
+/// Turns errno into ClosedPipe, Interrupted (a signal ended a wait for input or for room in a pipe), or Error
+/// "<sentence>: <cause>".
 [[noreturn]] void throw_system_error(const std::string& sentence);
 
 /// The documents of several files, one after the other; no file, or "-", is stdin.
@@ -26,7 +25,7 @@ class Input {
    public:
     /// stop: asked before each document; where it says true Interrupted is thrown. A signal that comes while a program works would
     /// otherwise be forgotten in the next wait.
-    explicit Input(std::vector<std::string> files, bool (*stop)() = nullptr);
+    explicit Input(std::vector<std::string> files, StopRequest stop = {});
     ~Input();
 
     /// Next document; nothing at the end. Throws Error for a file that cannot be opened or read, or if there was no document at
@@ -38,7 +37,7 @@ class Input {
 
    private:
     std::vector<std::string> files_;
-    bool (*stop_)();
+    StopRequest stop_;
     std::size_t opened_ = 0;
     std::size_t documents_ = 0;
     std::FILE* file_ = nullptr;

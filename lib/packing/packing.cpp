@@ -6,7 +6,7 @@
 
 #include "core/neighbours.h"
 #include "core/spatial_order.h"
-#include "io/files.h"
+#include "core/stop.h"
 
 namespace kiln::packing {
 
@@ -63,7 +63,7 @@ std::string rounded(double value) {
 void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) {
     if (relaxation.finished) return;
     const std::string steps = std::to_string(relaxation.steps) + " steps";
-    if (!relaxation.jammed && relaxation.steps < RelaxationOptions().most_steps) throw io::Interrupted();
+    if (!relaxation.jammed && relaxation.steps < RelaxationOptions().most_steps) throw Interrupted();
     const std::string when = (relaxation.jammed ? "jammed after " : "after ") + steps;
     if (options.method == Method::soft)
         throw Error("relative density " + rounded(options.density) + ": " + when + " the mean overlap is " +

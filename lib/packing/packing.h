@@ -30,7 +30,7 @@ struct PackingOptions {
 };
 
 /// A packing in a box that is periodic in three axes, its rows ordered along a space-filling curve; one material, none named yet.
-/// Throws Error where the density cannot be reached, and io::Interrupted where watch ended the relaxation.
+/// Throws Error where the density cannot be reached, and Interrupted where watch ended the relaxation.
 State pack(const PackingOptions& options, const std::function<bool(const Relaxation&)>& watch);
 
 }  // namespace kiln::packing

@@ -174,7 +174,7 @@ TEST_CASE("errno becomes a closed pipe, an interruption or a sentence") {
     errno = EPIPE;
     CHECK_THROWS_AS(io::throw_system_error("x"), io::ClosedPipe);
     errno = EINTR;
-    CHECK_THROWS_AS(io::throw_system_error("x"), io::Interrupted);
+    CHECK_THROWS_AS(io::throw_system_error("x"), Interrupted);
     CHECK(sentence_of([] {
               errno = ENOSPC;
               io::throw_system_error("x");

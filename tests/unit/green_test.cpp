@@ -258,5 +258,5 @@ TEST_CASE("green: ids are rows, positions lie in the box, and neighbours in spac
 }
 
 TEST_CASE("green: an interrupted relaxation gives no body") {
-    CHECK_THROWS_AS(pack(few(100), [](const Relaxation& now) { return now.steps < 3; }), io::Interrupted);
+    CHECK_THROWS_AS(pack(few(100), [](const Relaxation& now) { return now.steps < 3; }), Interrupted);
 }

@@ -100,7 +100,7 @@ int run(const std::string& tool, int argc, char** argv, const std::function<int(
         return wrong_usage;
     } catch (const io::ClosedPipe&) {
         return closed_pipe;
-    } catch (const io::Interrupted&) {
+    } catch (const Interrupted&) {
         return status_after_signal(interrupted);
     } catch (const std::bad_alloc&) {
         say("there is not enough memory");

@@ -1,0 +1,22 @@
+// stop.h: how long work is asked to end early, the same way everywhere in the library.
+#pragma once
+
+#include <exception>
+#include <functional>
+
+namespace kiln {
+
+/// Long work asks this from one thread, several times a second: true means that it should end. Empty: nobody will ask it to.
+using StopRequest = std::function<bool()>;
+
+/// A stop was requested and there is no result to give; what was being changed may be half done.
+struct Interrupted : std::exception {
+    const char* what() const noexcept override { return "a stop was requested"; }
+};
+
+/// Throws Interrupted if a stop is requested.
+inline void throw_if_stopped(const StopRequest& stop) {
+    if (stop && stop()) throw Interrupted();
+}
+
+}  // namespace kiln
