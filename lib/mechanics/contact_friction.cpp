@@ -1,6 +1,6 @@
 // contact_friction.cpp: equilibria with friction: limits that follow the normal forces, and the path from load to load.
+#include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "mechanics/contact_problem.h"
 
@@ -9,12 +9,15 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr int most_passes = 200;
+constexpr int idle_passes = 10;           // in a row that bring the limits no closer: rounding has the last word
 constexpr double limit_tolerance = 1e-9;  // change of a friction limit over the punch force
+constexpr double limit_share = 0.1;       // the same, of the tolerance for unbalanced forces where that is finer
 
 }  // namespace
 
-/// Minima for limits of friction that are taken anew from each; false if they go on changing.
-bool ContactProblem::settle(const Drive& drive) {
+/// Minima for limits of friction that are taken anew from each; false if they go on changing. The limits are forces that the
+/// minimum takes as given, so they have to be known better than the forces are to be balanced.
+bool ContactProblem::settle(const Drive& drive, double tolerance) {
     if (!grips_.active()) {
         minimise(drive);
         return true;
@@ -29,12 +32,16 @@ bool ContactProblem::settle(const Drive& drive) {
         minimise(drive);
         gripped_ = true;
     }
-    for (int pass = 0; pass < most_passes; ++pass) {
+    const double wanted = std::min(limit_tolerance, limit_share * tolerance) * drive.force;
+    double least = HUGE_VAL;
+    for (int pass = 0, idle = 0; pass < most_passes && idle < idle_passes; ++pass) {
         const double change = grips_.follow(overlaps());
-        if (pass > 0 && change <= limit_tolerance * drive.force) return true;
+        if (pass > 0 && change <= wanted) return true;
+        idle = change < least ? 0 : idle + 1;
+        least = std::min(least, change);
         minimise(drive);
     }
-    return false;
+    return least <= tolerance * drive.force;
 }
 
 void ContactProblem::keep() {

@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t most_fields = 120;
 constexpr int most_newton_steps = 500;
 constexpr double newton_tolerance = 1e-13;  // unbalanced force in the space over the punch force
+constexpr double rounding_residual = 1e-9;  // below which rounding may have the last word
+constexpr double least_progress = 0.5;      // residual with a field over that without it, below that
 
 std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
@@ -171,17 +173,33 @@ Equilibrium ContactProblem::solve(double force, double tolerance) {
 
 Equilibrium ContactProblem::relax(double force, double tolerance) { return search({force, true}, tolerance); }
 
+/// Where rounding has the last word, a field no longer helps: it is taken out again, since it would spoil the space.
 Equilibrium ContactProblem::search(const Drive& drive, double tolerance) {
     Equilibrium state;
+    Eigen::VectorXd before;       // amplitudes before the last field was added; empty if none was
+    double before_residual = 0.0;
     while (true) {
-        const bool settled = settle(drive);
-        const Forces forces = forces_at(amplitude_);
-        const Vector rest = unbalanced(forces);
+        const bool settled = settle(drive, tolerance);
+        Forces forces = forces_at(amplitude_);
+        Vector rest = unbalanced(forces);
         state.residual = linalg::norm(rest) / forces.force.norm();
+        const bool stuck = before.size() > 0 && state.residual > tolerance && before_residual < rounding_residual &&
+                           !(state.residual < least_progress * before_residual);
+        if (stuck) {
+            remove_last_field();
+            amplitude_ = before;
+            grips_.follow(overlaps());
+            forces = forces_at(amplitude_);
+            rest = unbalanced(forces);
+            state.residual = linalg::norm(rest) / forces.force.norm();
+        }
         state.converged = settled && state.residual <= tolerance;
         const std::size_t fields = fields_.size();
-        if (state.residual > tolerance && fields < most_fields) add_response(rest, state.iterations);
+        before = amplitude_;
+        before_residual = state.residual;
+        if (!stuck && state.residual > tolerance && fields < most_fields) add_response(rest, state.iterations);
         if (fields_.size() > fields) continue;
+        before.resize(0);
         state.displacement = combine(false);
         if (add_closed_pairs(state.displacement)) continue;
         conclude(state, forces, drive);

@@ -101,13 +101,14 @@ class ContactProblem {
     void add_contact(const Contact& contact);
     bool add_closed_pairs(const Vector& displacement);
     void add_field(Field field);
+    void remove_last_field();
     void start_anew();
     void add_response(const Vector& unbalanced, int& iterations);
     Forces forces_at(const Eigen::VectorXd& amplitude) const;
     Eigen::MatrixXd curvature(const Forces& forces, const Eigen::VectorXd& amplitude) const;
     double bond_energy(const Eigen::VectorXd& amplitude) const { return 0.5 * amplitude.dot(stiffness_ * amplitude); }
     void minimise(const Drive& drive);
-    bool settle(const Drive& drive);
+    bool settle(const Drive& drive, double tolerance);
     Equilibrium search(const Drive& drive, double tolerance);
     void touch_all(double force);
     Vector combine(bool forces) const;

@@ -150,6 +150,16 @@ void ContactProblem::add_field(Field field) {
     }
 }
 
+void ContactProblem::remove_last_field() {
+    fields_.pop_back();
+    const auto columns = static_cast<Eigen::Index>(fields_.size()) + 1;
+    closing_.conservativeResize(Eigen::NoChange, columns);
+    sliding_.conservativeResize(Eigen::NoChange, columns);
+    amplitude_.conservativeResize(columns);
+    kept_.conservativeResize(columns);
+    stiffness_.conservativeResize(columns, columns);
+}
+
 Vector ContactProblem::combine(bool forces) const {
     Vector sum(network_.nodes(), Vec6::Zero());
     for (std::size_t k = 0; k < fields_.size(); ++k) {
