@@ -32,6 +32,18 @@ double work_of_punch(std::span<const Level> levels) {
     return sum;
 }
 
+WorkOfStep work_of_step(const Level& from, const Level& to) {
+    const double travel = to.point.punch - from.point.punch, force = to.point.force - from.point.force;
+    const double mean = 0.5 * (from.point.force + to.point.force) * travel;
+    const auto stiffness = [](const Level& level) { return level.compliance > 0.0 ? 1.0 / level.compliance : 0.0; };
+    const double by_force = mean - force * force / 12.0 * (from.compliance - to.compliance);
+    const double by_travel = mean + travel * travel / 12.0 * (stiffness(from) - stiffness(to));
+    const double range = 0.5 * std::abs(force * travel);  // about the mean, whatever the curve, if it is monotone
+    const auto possible = [&](double work) { return std::abs(work - mean) <= range; };
+    if (possible(by_force) && possible(by_travel)) return {by_force, std::abs(by_force - by_travel)};
+    return {mean, range};
+}
+
 Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options)
     : tooling_(find_contacts(specimen, fixture)),
       solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),

@@ -15,6 +15,14 @@ struct Level {
 /// Work of the punch from the first level to the last, J. Travel is a cubic between forces (Hermite), from its values and slopes.
 double work_of_punch(std::span<const Level> levels);
 
+struct WorkOfStep {
+    double value, uncertainty;  // J
+};
+
+/// Work of the punch from one level to the next, without more between them. What two cubics leave open, travel over force and force
+/// over travel, is uncertain; so is all that a force which only grows or only falls may have done, where a cubic does neither.
+WorkOfStep work_of_step(const Level& from, const Level& to);
+
 /// Equilibria of one test; their iterations, residuals and convergence go to its result.
 class Equilibria {
    public:

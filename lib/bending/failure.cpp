@@ -16,7 +16,11 @@ namespace {
 /// Of its stiffness that a broken bond keeps, so that a particle that hangs on nothing else stays in its place.
 constexpr double remnant = 1e-6;
 constexpr double strength_tolerance = 1e-3;  // of the stress at which a bond breaks
-constexpr int most_trials = 20;
+constexpr int most_trials = 100;
+constexpr double narrowest = 1e-12;        // bracket of the force at which a bond breaks, over that force
+constexpr double work_tolerance = 2e-4;    // of the work between two breaks, over the most energy that was stored
+constexpr double tenth = 0.1;
+constexpr int most_halvings = 24;          // of the steps of force between two breaks
 constexpr std::size_t most_breaks = 100000;
 
 struct Weakest {
@@ -37,6 +41,12 @@ Weakest find_weakest(const mechanics::BondNetwork& network, const std::vector<me
         if (ratio > weakest.ratio) weakest = {bond, ratio};
     }
     return weakest;
+}
+
+/// Between two forces, N: halfway, but down by tenths to a force that is next to nothing.
+double middle_force(double one, double other) {
+    const double low = std::min(one, other), high = std::max(one, other);
+    return low < 0.5 * tenth * high ? tenth * high : 0.5 * (low + high);
 }
 
 /// A bar that loses its bonds one after the other.
@@ -78,25 +88,45 @@ class Failure {
     }
 
    private:
-    /// The equilibrium in which the weakest bond has just reached its strength: stresses grow nearly as the force.
+    /// The equilibrium in which the weakest bond has just reached its strength. Stresses grow nearly as the force, or in leaps
+    /// where the bar comes to rest on other particles: as soon as there is a force on either side, the search stays between them.
     Weakest load() {
+        struct Side {
+            double force = 0.0, excess = 0.0;  // N; ratio - 1, halved whenever the other side is moved again (Illinois)
+        } below, above;
         for (int trial = 0; trial < most_trials; ++trial) {
-            level_ = equilibria_.trial(force_, result_);
-            result_.loads = mechanics::bond_loads(result_.specimen.body.network, equilibria_.last().displacement);
-            const Weakest weakest = find_weakest(result_.specimen.body.network, result_.loads, result_.broken, options_);
+            const Weakest weakest = try_force();
             if (!(weakest.ratio > 0.0)) throw Error("no bond of the bar is stressed towards the strength given, so none breaks");
             if (std::abs(weakest.ratio - 1.0) <= strength_tolerance) return weakest;
-            force_ /= weakest.ratio;
+            const bool over = weakest.ratio > 1.0;
+            Side &here = over ? above : below, &there = over ? below : above;
+            if (here.force > 0.0) there.excess *= 0.5;
+            here = {force_, weakest.ratio - 1.0};
+            if (!(below.force > 0.0 && above.force > 0.0)) {
+                force_ /= weakest.ratio;
+            } else if (above.force - below.force > narrowest * above.force) {
+                force_ = (below.force * above.excess - above.force * below.excess) / (above.excess - below.excess);
+            } else if (over) {
+                return weakest;  // the stress leaps past the strength
+            } else {
+                force_ = above.force;
+            }
         }
         throw Error("no punch force was found at which the next bond breaks");
+    }
+
+    Weakest try_force() {
+        level_ = equilibria_.trial(force_, result_);
+        result_.loads = mechanics::bond_loads(result_.specimen.body.network, equilibria_.last().displacement);
+        return find_weakest(result_.specimen.body.network, result_.loads, result_.broken, options_);
     }
 
     /// Takes the point to the curve and to the balance of energy. Up to the first break the bar is elastic: it stores the work.
     void account() {
         const Point& here = level_.point;
-        result_.failure.work += result_.breaks == 0 ? level_.energy : work_of_punch(std::array{relaxed_, level_});
-        result_.failure.stored = level_.energy;
         most_stored_ = std::max(most_stored_, level_.energy);
+        result_.failure.work += result_.breaks == 0 ? level_.energy : work_since_break();
+        result_.failure.stored = level_.energy;
         result_.curve.push_back(here);
         if (here.force > result_.peak_force) {
             result_.peak_force = here.force;
@@ -104,6 +134,28 @@ class Failure {
         }
         result_.residual = std::max(result_.residual, equilibria_.last().residual);
         result_.converged = result_.converged && equilibria_.last().converged;
+    }
+
+    /// Work of the punch from the last break on, J. Where a break took away what the punch pressed on, force grows in leaps: levels
+    /// in between are solved for until the curve through them is certain.
+    double work_since_break() {
+        double sum = 0.0;
+        std::vector<Level> ahead{level_};  // the nearest last
+        Level from = relaxed_;
+        for (int halvings = 0; !ahead.empty();) {
+            const Level& to = ahead.back();
+            const WorkOfStep work = work_of_step(from, to);
+            if (work.uncertainty <= work_tolerance * most_stored_ || halvings == most_halvings) {
+                sum += work.value;
+                from = to;
+                ahead.pop_back();
+            } else {
+                ++halvings;
+                ahead.push_back(equilibria_.trial(middle_force(from.point.force, to.point.force), result_));
+            }
+        }
+        if (from.point.force != equilibria_.last().punch_force) try_force();
+        return sum;
     }
 
     /// The punch stands still as a bond breaks: what is stored no more is spent.

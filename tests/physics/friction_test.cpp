@@ -9,6 +9,7 @@
 #include "mechanics/contact_grips.h"
 #include "mechanics/explicit_contacts.h"
 #include "physics/hertz.h"
+#include "tests/physics/bar_files.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "bending/dynamic_bending.h"
@@ -265,4 +266,20 @@ TEST_CASE("gaps that close carry friction too") {
     CHECK(result.closed_gaps > 0);
     CHECK(result.converged);
     CHECK(result.energy_error < 0.02);
+}
+
+TEST_CASE("friction at finer and finer tolerances: the same bar, balanced as wanted down to 1e-11 and finite below") {
+    const State state = test::bar_of_file("friction_nonfinite.kiln");
+    const Options usual = once(0.3);
+    const Result expected = bent(state, usual);
+    for (const double tolerance : {1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14}) {
+        Options fine = usual;
+        fine.tolerance = tolerance;
+        const Result result = bent(state, fine);
+        CHECK(result.converged == (result.residual <= tolerance));
+        if (tolerance >= 1e-11) CHECK(result.converged);
+        CHECK(result.residual < 1e-6);
+        CHECK(peak_stiffness(result, fine) == relative(peak_stiffness(expected, usual), 1e-6));
+        CHECK(result.energy_error == relative(expected.energy_error, 1e-4));
+    }
 }

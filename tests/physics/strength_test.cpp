@@ -10,6 +10,7 @@
 
 #include "physics/bending.h"
 #include "physics/hertz.h"
+#include "tests/physics/bar_files.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "bending/equilibria.h"
@@ -147,6 +148,25 @@ TEST_CASE("what breaks dissipate is what bars with and without the bond store un
         dissipated += energy_at(here.punch, here.force, next - 1) - energy_at(here.punch, here.force, next);
     }
     CHECK(result.failure.dissipated == relative(dissipated, 1e-3));
+}
+
+TEST_CASE("a break that takes away what the punch pressed on: work is positive, and what is stored and spent") {
+    const Result result = failed(test::bar_of_file("strength_energy_small.kiln"));
+    const Point& last = result.curve[result.curve.size() - 2];
+    CHECK(result.failure.work > 0.0);
+    CHECK(result.failure.work < result.peak_force * last.punch);
+    CHECK(result.failure.work == relative(result.failure.stored + result.failure.dissipated, 5e-3));
+    CHECK(result.energy_error < 5e-3);
+}
+
+TEST_CASE("the next bond breaks where stress grows much faster than the force: the search stays between the forces it has tried") {
+    Options options;
+    options.shear_strength = 4445.34e6;
+    const Result result = failed(test::bar_of_file("no_punch_force.kiln"), options);
+    CHECK(result.breaks > 5);
+    CHECK(result.curve.size() == result.breaks + 2);
+    CHECK(result.curve[1].force == relative(1.928e-5, 1e-3));
+    CHECK(result.energy_error < 5e-3);
 }
 
 TEST_CASE("bending strength does not depend on the scale, and doubles with the bonds' where contacts stay as they are") {
