@@ -36,9 +36,11 @@ bool ContactProblem::settle(const Drive& drive, double tolerance) {
     double least = HUGE_VAL;
     for (int pass = 0, idle = 0; pass < most_passes && idle < idle_passes; ++pass) {
         const double change = grips_.follow(overlaps());
-        if (pass > 0 && change <= wanted) return true;
-        idle = change < least ? 0 : idle + 1;
-        least = std::min(least, change);
+        if (pass > 0) {  // the first change is that of the load
+            if (change <= wanted) return true;
+            idle = change < least ? 0 : idle + 1;
+            least = std::min(least, change);
+        }
         minimise(drive);
     }
     return least <= tolerance * drive.force;

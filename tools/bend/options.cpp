@@ -13,6 +13,8 @@ using bending::Method;
 
 namespace {
 
+constexpr double finest_with_friction = 1e-12;
+
 constexpr const char* description =
     "Bends a bar of bonded particles on two supports under a punch: three rigid cylinders along y, the bar along x, the load along "
     "-z. The bar is cut from the periodic box: bonds through the opened faces are dropped. Writes one dem-bend document a state, "
@@ -87,6 +89,9 @@ void Options::check(const CLI::App& app) const {
     }
     if (app.count("--until") > 0 && !to_failure()) {
         throw CLI::ValidationError("--until", "needs --tensile-strength or --shear-strength");
+    }
+    if (friction > 0.0 && tolerance < finest_with_friction) {
+        throw CLI::ValidationError("--tolerance", "must be at least 1e-12 with --friction, whose limits are known no better");
     }
     if (!to_failure()) return;
     if (method != Method::equilibria) throw CLI::ValidationError("--method", "must be static for bonds to break");
