@@ -12,8 +12,7 @@ namespace kiln::mechanics {
 
 namespace {
 
-constexpr double margin = 0.1;            // of the mean radius: pairs with a smaller gap are watched
-constexpr int steps_between_checks = 64;  // particles move by a millionth of a radius in a step; see bend's time step
+constexpr double margin = 0.1;  // of the mean radius: pairs with a smaller gap are watched
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
@@ -49,6 +48,16 @@ void ExplicitContacts::search(const Vector& displacement) {
     pair_grip_ = std::move(grip);
     overlap_.resize(pairs_.size());
     searched_at_ = displacement;
+}
+
+/// m. While no particle has gone farther than half the margin, no two that were not near each other have met.
+double ExplicitContacts::farthest_since_search(const Vector& displacement) const {
+    double farthest = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : farthest) if (displacement.size() > worth_threads)
+    for (std::size_t node = 0; node < displacement.size(); ++node) {
+        farthest = std::max(farthest, (displacement[node] - searched_at_[node]).head<3>().squaredNorm());
+    }
+    return std::sqrt(farthest);
 }
 
 /// Moves the tangential spring along by `slide`, m, the way of the other surface against the sphere's; force on the sphere, N.
@@ -134,14 +143,7 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
 
 void ExplicitContacts::add_forces(const Vector& displacement, const Vector& velocity, double travel, double punch_velocity,
                                   double dt, Vector& force) {
-    if (++steps_since_check_ == steps_between_checks) {
-        steps_since_check_ = 0;
-        double farthest = 0.0;
-        for (std::size_t node = 0; node < displacement.size(); ++node) {
-            farthest = std::max(farthest, (displacement[node] - searched_at_[node]).head<3>().squaredNorm());
-        }
-        if (farthest > margin_ * margin_ / 16.0) search(displacement);
-    }
+    if (farthest_since_search(displacement) > margin_ / 2.0) search(displacement);
     punch_force_ = energy_ = 0.0;
     touching_pairs_ = 0;
     add_pairs(displacement, velocity, dt, force);

@@ -38,6 +38,7 @@ class ExplicitContacts {
     };
 
     void search(const Vector& displacement);
+    double farthest_since_search(const Vector& displacement) const;
     void add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force);
     void add_walls(const Vector& displacement, const Vector& velocity, double travel, double punch_velocity, double dt,
                    Vector& force);
@@ -52,7 +53,6 @@ class ExplicitContacts {
     std::vector<physics::Grip> pair_grip_, wall_grip_;
     std::vector<Vec3> wall_force_;
     Vector searched_at_;  // displacements at the last search
-    int steps_since_check_ = 0;
     double punch_force_ = 0.0, energy_ = 0.0, loss_ = 0.0;
     std::size_t touching_pairs_ = 0;
 };
