@@ -10,12 +10,15 @@ namespace kiln::bending {
 
 namespace {
 
-/// Number of boxes that a position was moved by, to be inside.
-Image cell_of(const Box& box, const Vec3& position, const Vec3& inside) {
-    Image cell{0, 0, 0};
+using Cell = std::array<std::int64_t, 3>;
+
+/// Number of boxes that a position was moved by, to be inside. Any number: positions may be far away where images of bonds, which
+/// are differences, fit into their bytes.
+Cell cell_of(const Box& box, const Vec3& position, const Vec3& inside) {
+    Cell cell{0, 0, 0};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
-        cell[axis] = static_cast<std::int8_t>(std::lround((position[k] - inside[k]) / box.lengths[k]));
+        cell[axis] = std::llround((position[k] - inside[k]) / box.lengths[k]);
     }
     return cell;
 }
@@ -30,7 +33,7 @@ const Material& main_material(const State& state) {
 }  // namespace
 
 std::size_t cut_open(State& state) {
-    std::vector<Image> cell;
+    std::vector<Cell> cell;
     for (Vec3& position : state.particles.position) {
         const Vec3 inside = state.box.wrap(position);
         cell.push_back(cell_of(state.box, position, inside));
@@ -39,8 +42,8 @@ std::size_t cut_open(State& state) {
     std::vector<std::int32_t> kept;
     Bonds& bonds = *state.bonds;
     for (std::size_t bond = 0; bond < bonds.size(); ++bond) {
-        const Image& first = cell[static_cast<std::size_t>(bonds.pair[bond][0])];
-        const Image& second = cell[static_cast<std::size_t>(bonds.pair[bond][1])];
+        const Cell& first = cell[static_cast<std::size_t>(bonds.pair[bond][0])];
+        const Cell& second = cell[static_cast<std::size_t>(bonds.pair[bond][1])];
         bool inside = true;
         for (std::size_t axis = 0; axis < 3; ++axis) inside = inside && bonds.image[bond][axis] + second[axis] == first[axis];
         if (!inside) continue;
