@@ -79,6 +79,13 @@ class Failure {
         return false;
     }
 
+    /// How far the force has fallen from its largest towards where the test ends, at most so far: nothing tells how long it grows.
+    double progress() {
+        const double fallen = (1.0 - level_.point.force / result_.peak_force) / (1.0 - options_.until);
+        progress_ = std::max(progress_, std::min(fallen, 1.0));
+        return progress_;
+    }
+
     mechanics::Equilibrium& last() { return equilibria_.last(); }
 
     /// Gap between the work of the punch and all energy, over the most that was stored.
@@ -195,6 +202,7 @@ class Failure {
     Equilibria equilibria_;
     double force_;
     double most_stored_ = 0.0;   // J
+    double progress_ = 0.0;
     Level level_{}, relaxed_{};  // as the last bond broke; after it, under the punch that stands still
 };
 
@@ -204,10 +212,11 @@ Result bend_to_failure(State state, const Options& options, const Watch& watch) 
     Result result = prepare(std::move(state), options);
     Failure failure(result, options);
     while (failure.next()) {
-        if (!watch(0.0)) return result;
+        if (!watch(failure.progress())) return result;
     }
     result.energy_error = failure.energy_gap();
     result.peak = std::move(failure.last());
+    add_warnings(result, options);
     return result;
 }
 
