@@ -1,7 +1,6 @@
 // dynamic_bending.cpp: strokes of the punch, sampling of the curve and the balance of energy of the dynamic test.
 #include "bending/dynamic_bending.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,22 +39,6 @@ std::vector<double> masses(const Specimen& specimen, double scaling) {
 /// Longest period of a beam on two supports, s: omega^2 = pi^4 S/(48 m) with S = 48 E I/L^3 and its mass m between the supports
 /// (Timoshenko, Vibration Problems in Engineering, transverse vibration of bars with hinged ends).
 double beam_period(double stiffness, double mass) { return 2.0 / std::numbers::pi * std::sqrt(48.0 * mass / stiffness); }
-
-/// The small rigid motion of a displacement field as a rotation that changes no distance, about the middle of the nodes.
-mechanics::Vector exact_rotation(const mechanics::BondNetwork& network, const mechanics::Vector& rigid) {
-    Vec3 middle = Vec3::Zero(), shift = Vec3::Zero();
-    for (std::size_t node = 0; node < network.nodes(); ++node) {
-        middle += network.position[node] / static_cast<double>(network.nodes());
-        shift += rigid[node].head<3>() / static_cast<double>(network.nodes());
-    }
-    const Vec3 turn = rigid.front().tail<3>() / network.rotation_length;
-    mechanics::Vector exact(network.nodes());
-    for (std::size_t node = 0; node < network.nodes(); ++node) {
-        const Vec3 arm = network.position[node] - middle;
-        exact[node] << shift + physics::turned(arm, turn) - arm, rigid[node].tail<3>();
-    }
-    return exact;
-}
 
 /// The test from the first touch on.
 class Strokes {
@@ -122,7 +105,7 @@ mechanics::ExplicitMotion Strokes::make_motion() {
     seat_ = rigid.seat(seating_force * stiffness * deflection_);
     mechanics::ExplicitMotion motion(specimen.body.network, mechanics::elastic_spheres(specimen.state, specimen.body), mass,
                                      tooling, {options_.damping, options_.friction, stiffness * deflection_});
-    const mechanics::Vector start = exact_rotation(specimen.body.network, rigid.displacement());
+    const mechanics::Vector start = rigid.displacement();
     motion.place(start, seat_);
     zero_ = gauge_.read(start);
     result_.dynamic.time_step = motion.time_step();
@@ -208,6 +191,7 @@ Result bend_dynamic(State state, const Options& options, const Watch& watch) {
     Result result = prepare(std::move(state), options);
     Strokes strokes(result, options, watch);
     strokes.run();
+    add_warnings(result, options);
     return result;
 }
 

@@ -45,7 +45,8 @@ WorkOfStep work_of_step(const Level& from, const Level& to) {
 }
 
 Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options)
-    : tooling_(find_contacts(specimen, fixture)),
+    : network_(specimen.body.network),
+      tooling_(find_contacts(specimen, fixture)),
       solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
       problem_(specimen.body.network, &solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction),
       gauge_(specimen, fixture),
@@ -69,6 +70,7 @@ Level Equilibria::at(double force, Result& result) {
 Level Equilibria::level_of(mechanics::Equilibrium equilibrium, Result& result) {
     last_ = std::move(equilibrium);
     result.iterations += last_.iterations;
+    result.tilt = std::max(result.tilt, mean_turn(network_, last_.displacement));
     return {{gauge_.read(last_.displacement), last_.punch - seat_, last_.punch_force},
             last_.punch_compliance,
             last_.bond_energy + last_.contact_energy,

@@ -27,6 +27,8 @@ WorkOfStep work_of_step(const Level& from, const Level& to);
 class Equilibria {
    public:
     Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options);
+    Equilibria(const Equilibria&) = delete;  // the contact problem refers to the solver
+    Equilibria& operator=(const Equilibria&) = delete;
 
     /// The bar seated by next to nothing of the greatest force (N): the zero of the punch's travel.
     void seat(double greatest_force);
@@ -58,6 +60,7 @@ class Equilibria {
     double trial_tolerance() const;
     Level level_of(mechanics::Equilibrium equilibrium, Result& result);
 
+    const mechanics::BondNetwork& network_;
     mechanics::Tooling tooling_;
     mechanics::ElasticSolver solver_;
     mechanics::ContactProblem problem_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "mechanics/explicit_motion.h"
@@ -46,15 +47,23 @@ struct Result {
     double friction_loss = 0.0;              // J, in the whole test
     double energy_error = 0.0;               // greatest gap between work of the punch and all energy, over that stored at the peak
     bool converged = true;
+    double tilt = 0.0;                 // rad, most that the bar turned as a whole under load, after it was seated
+    std::vector<std::string> warnings;  // sentences: why the test may not say what it seems to say
     DynamicRun dynamic;                // of the dynamic method
     std::size_t breaks = 0;            // of bonds, in a test to failure
     std::vector<std::int32_t> broken;  // for each bond its place in the order of breaks, from 1; 0 for a whole one
     FailureEnergy failure;
 };
 
-/// The bar cut, its cylinders placed, and the point of the curve without load. Throws Error where the bar cannot be tested (see
-/// cut_specimen, place_fixture).
+/// The bar cut, its cylinders placed, the bar at rest between them, and the point of the curve without load. Throws Error where the bar cannot be tested (see
+/// cut_specimen, place_fixture, seat_bar).
 Result prepare(State state, const Options& options);
+
+/// Mean rotation of the nodes about x and y, rad.
+double mean_turn(const mechanics::BondNetwork& network, const linalg::Vector& displacement);
+
+/// Adds the warnings that a finished test calls for.
+void add_warnings(Result& result, const Options& options);
 
 /// Takes what the contacts carry in an equilibrium as that of the greatest force.
 void read_contacts(Result& result, const mechanics::Tooling& tooling, const mechanics::Equilibrium& equilibrium);

@@ -121,6 +121,7 @@ Result bend_static(State state, const Options& options, const Watch& watch) {
     read_contacts(result, equilibria.tooling(), result.peak);
     const auto cycle = options.friction > 0.0 ? cycle_with_friction : cycle_elastic;
     cycle(equilibria, peak, options, watch, result);
+    add_warnings(result, options);
     return result;
 }
 

@@ -15,6 +15,11 @@ namespace {
 
 using namespace kiln;
 
+void warn(const std::string& state, const bending::Result& result) {
+    if (!result.converged) cli::warn("bend", state + ": some forces stayed unbalanced; see \"residual\" in the result");
+    for (const std::string& warning : result.warnings) cli::warn("bend", state + ": " + warning);
+}
+
 int run(int argc, char** argv) {
     cli::Common common;
     bend::Options options;
@@ -44,7 +49,7 @@ int run(int argc, char** argv) {
         const bending::Result result = test(std::move(*state), options, watch);
         if (cli::stop_requested()) return cli::interrupted;
         progress.clear();
-        if (!result.converged) cli::warn("bend", name + ": some forces stayed unbalanced; see \"residual\" in the result");
+        if (!common.quiet) warn(name, result);
         converged = converged && result.converged;
         history.push_back(cli::history_entry("bend", app, bend::summary(result)));
         output.write(bend::document(result, options, history));

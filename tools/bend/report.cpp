@@ -88,6 +88,7 @@ Json document(const Result& result, const Options& options, Json history) {
         force.push_back(point.force);
     }
     json["curve"] = {{"deflection", deflection}, {"punch", punch}, {"force", force}};
+    json["roll"] = specimen.turn.norm();
     json["horizontal_reaction"] = result.thrust;
     json["energy"] = {{"bonds", result.peak.bond_energy},
                       {"contacts", result.peak.contact_energy},
@@ -115,9 +116,9 @@ State bent_state(const Result& result, Json history) {
     std::vector<Vec3> displacement, rotation, force, moment;
     for (std::size_t node = 0; node < network.nodes(); ++node) {
         const mechanics::Vec6& freedoms = result.peak.displacement[node];
-        displacement.emplace_back(freedoms.head<3>());
-        rotation.emplace_back(freedoms.tail<3>() / network.rotation_length);
-        state.particles.position[node] += displacement.back();
+        state.particles.position[node] += freedoms.head<3>();
+        displacement.emplace_back(result.specimen.moved[node] + freedoms.head<3>());
+        rotation.emplace_back(result.specimen.turn + freedoms.tail<3>() / network.rotation_length);
     }
     std::vector<double> tension, tensile, shear;
     const std::vector<mechanics::BondLoad>& loads = result.loads;
