@@ -17,6 +17,8 @@ class Multigrid {
    public:
     /// matrix: symmetric positive definite, kept by reference; largest_eigenvalue: bound for that of the block-Jacobi matrix.
     Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double largest_eigenvalue);
+    Multigrid(const Multigrid&) = delete;  // coarse levels refer to matrices of their own
+    Multigrid& operator=(const Multigrid&) = delete;
 
     /// z = M^-1 r.
     void apply(const Vector& r, Vector& z);

@@ -19,6 +19,8 @@ enum class Ground {
 class ElasticSolver {
    public:
     ElasticSolver(const BondNetwork& network, Ground ground);
+    ElasticSolver(const ElasticSolver&) = delete;  // the preconditioner refers to the matrix
+    ElasticSolver& operator=(const ElasticSolver&) = delete;
 
     /// Displacements under a load in equilibrium; x is where the search starts. See conjugate_gradient for the result.
     SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
@@ -30,7 +32,7 @@ class ElasticSolver {
     /// for the softer body.
     void soften(const BondNetwork& network, std::size_t bond, double share);
 
-    const linalg::Multigrid& preconditioner() const { return *preconditioner_; }
+    linalg::Multigrid& preconditioner() { return *preconditioner_; }
 
    private:
     BlockMatrix matrix_;  // with the ground springs

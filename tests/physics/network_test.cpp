@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
+#include "bending/equilibria.h"
 #include "mechanics/elastic_solver.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
@@ -142,7 +144,7 @@ TEST_CASE("iterations grow neither with the number of particles nor with slender
 TEST_CASE("the preconditioner is symmetric and positive") {
     const BondNetwork network = bonded_body(rough_bar({30, 6, 6}), {}).network;
     ElasticSolver solver(network, Ground::displacement_and_rotation);
-    linalg::Multigrid preconditioner = solver.preconditioner();
+    linalg::Multigrid& preconditioner = solver.preconditioner();
     Vector a(network.nodes()), b(network.nodes()), pa, pb;
     for (std::size_t i = 0; i < network.nodes(); ++i) {
         for (int k = 0; k < 6; ++k) {
@@ -170,6 +172,15 @@ TEST_CASE("the same bytes for any number of threads") {
         CHECK(same);
     }
     omp_set_num_threads(threads);
+}
+
+TEST_CASE("what refers to parts of itself can be neither copied nor moved") {
+    CHECK_FALSE(std::is_copy_constructible_v<ElasticSolver>);
+    CHECK_FALSE(std::is_move_constructible_v<ElasticSolver>);
+    CHECK_FALSE(std::is_copy_constructible_v<linalg::Multigrid>);
+    CHECK_FALSE(std::is_move_constructible_v<linalg::Multigrid>);
+    CHECK_FALSE(std::is_copy_constructible_v<bending::Equilibria>);
+    CHECK_FALSE(std::is_move_constructible_v<bending::Equilibria>);
 }
 
 TEST_CASE("fragments, particles without a bond, bonds too thin to carry") {
