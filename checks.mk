@@ -8,11 +8,14 @@ ARCHER      ?= /usr/lib/llvm-14/lib/libarcher.so
 TRIALS      ?= 8
 SEED        ?= 1
 
-.PHONY: relations asan tsan tidy same-bytes
+.PHONY: relations bars asan tsan tidy same-bytes
 
 relations: all                  ## try TRIALS (8) random cases of what must hold whatever the input, from SEED (1) on; 5 minutes
 	BUILD=$(BUILD) PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/relations/relations.py --trials $(TRIALS) --seed $(SEED) \
 	    --keep $(abspath $(BUILD))/relations
+
+bars: all                       ## bend 300 random small bars to failure and 100 with friction, from SEED (1) on; 5 minutes
+	BUILD=$(BUILD) PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/relations/bars.py --seed $(SEED)
 
 asan:                           ## build with address and undefined-behaviour sanitizers into build-asan and run all tests
 	SANITIZED=1 $(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \

@@ -71,7 +71,8 @@ void add_warnings(Result& result, const Options& options) {
                            "follows it, and may differ");
     }
     if (options.method == Method::motion) {
-        const double damped = result.dynamic.energy.damping / options.cycles / (result.peak.bond_energy + result.peak.contact_energy);
+        const double stored = result.peak.bond_energy + result.peak.contact_energy;
+        const double damped = result.dynamic.energy.damping / options.cycles / stored;
         if (damped > large_damping) {
             warnings.push_back("damping takes " + digits(100.0 * damped) +
                                " % of the energy stored in each cycle, so the forces are not those of --method static; a lower "

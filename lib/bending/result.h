@@ -55,8 +55,8 @@ struct Result {
     FailureEnergy failure;
 };
 
-/// The bar cut, its cylinders placed, the bar at rest between them, and the point of the curve without load. Throws Error where the bar cannot be tested (see
-/// cut_specimen, place_fixture, seat_bar).
+/// The bar cut, its cylinders placed, the bar at rest between them, and the point of the curve without load. Throws Error where the
+/// bar cannot be tested (see cut_specimen, place_fixture, seat_bar).
 Result prepare(State state, const Options& options);
 
 /// Mean rotation of the nodes about x and y, rad.

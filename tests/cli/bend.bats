@@ -164,3 +164,30 @@ PROGRAM
     assert_output ''
     assert_regex "$stderr" "punch-velocity.* is too fast"
 }
+
+@test "-q: no warnings, whatever they are about" {
+    run -0 --separate-stderr "$BEND" --cycles 1 "$DATA/bend/dynamic_slope.kiln"
+    assert_regex "$stderr" "state 1: the bar rolls by 0.3"
+    jq -e '.roll > 0.3' <<<"$output"
+    run -3 --separate-stderr "$BEND" --cycles 1 --tolerance 1e-14 "$BAR"
+    assert_regex "$stderr" "unbalanced"
+    for options in "--cycles 1 $DATA/bend/dynamic_slope.kiln" "--cycles 1 --tolerance 1e-14 $BAR"; do
+        "$BEND" -q $options >"$BATS_TEST_TMPDIR/result.json" 2>"$BATS_TEST_TMPDIR/words" || true
+        assert [ -s "$BATS_TEST_TMPDIR/result.json" ]
+        assert [ ! -s "$BATS_TEST_TMPDIR/words" ]
+    done
+}
+
+@test "friction keeps tolerances down to 1e-12, and finer ones are refused" {
+    run -0 --separate-stderr "$BEND" -q --friction 0.3 --cycles 1 --tolerance 1e-12 "$DATA/bend/friction_nonfinite.kiln"
+    jq -e '.converged and .residual <= 1e-12 and .energy.error < 0.02' <<<"$output"
+    run -2 "$BEND" --friction 0.3 --tolerance 1e-13 "$BAR"
+    assert_output --partial "at least 1e-12 with --friction"
+}
+
+@test "bars that lost their balance of energy or their curve: both are there" {
+    run -0 --separate-stderr "$BEND" --tensile-strength 300MPa "$DATA/bend/strength_energy_small.kiln"
+    jq -e '.energy | .work > 0 and .error < 5e-3' <<<"$output"
+    run -0 --separate-stderr "$BEND" -q --shear-strength 4445.34MPa "$DATA/bend/no_punch_force.kiln"
+    jq -e '.strength.breaks > 5 and (.curve.force | length) == .strength.breaks + 2 and .energy.error < 5e-3' <<<"$output"
+}

@@ -5,11 +5,9 @@
 #include <doctest/doctest.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "tests/physics/bar_files.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "tools/bend/report.h"
@@ -179,34 +177,6 @@ TEST_CASE("the modulus does not depend on the scale, from 1 nm to 1 m") {
         CHECK(modulus_of(tested(test::make_rough_bar({30, 6, 6}, edge))) == relative(modulus, 1e-8));
 }
 
-TEST_CASE("a bar that rolls under the cylinders comes to rest whole: distances stay, and they turn it no further") {
-    const State state = test::bar_of_file("dynamic_slope.kiln");
-    const Result result = tested(state);
-    const mechanics::BondNetwork& network = result.specimen.body.network;
-    CHECK(result.specimen.turn.norm() > 0.3);
-    CHECK(std::any_of(result.warnings.begin(), result.warnings.end(),
-                      [](const std::string& words) { return words.find("rolls by") != std::string::npos; }));
-    const mechanics::BondNetwork before = cut_specimen(state, {}).body.network;
-    for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
-        CHECK(network.vector[bond].norm() == relative(before.vector[bond].norm(), 1e-12));
-        const auto [i, j] = network.pair[bond];
-        CHECK((network.position[static_cast<std::size_t>(j)] - network.position[static_cast<std::size_t>(i)] - network.vector[bond])
-                  .norm() < 1e-12 * before.vector[bond].norm());
-    }
-    mechanics::ContactProblem rigid(network, nullptr, find_contacts(result.specimen, result.fixture).contacts);
-    rigid.seat(1e-16);
-    CHECK(rigid.displacement().front().tail<3>().norm() / network.rotation_length < 1e-5);
-    // The bent state is the one that came in, displaced.
-    const State bent = bend::bent_state(result, Json::array());
-    const auto displacement = std::find_if(bent.particles.other.begin(), bent.particles.other.end(),
-                                           [](const NamedArray& each) { return each.name == "displacement"; });
-    const auto& rows = std::get<std::vector<double>>(displacement->array.data);
-    for (std::size_t node = 0; node < network.nodes(); ++node) {
-        const Vec3 moved(rows[3 * node], rows[3 * node + 1], rows[3 * node + 2]);
-        CHECK((bent.particles.position[node] - moved - before.position[node]).norm() < 1e-18);
-    }
-}
-
 TEST_CASE("where the particles' images are does not matter") {
     State state = test::make_rough_bar({30, 6, 6});
     const Result as_built = tested(state);
@@ -214,13 +184,6 @@ TEST_CASE("where the particles' images are does not matter") {
     const Result moved = tested(state);
     CHECK(moved.specimen.dropped_bonds == as_built.specimen.dropped_bonds);
     CHECK(modulus_of(moved) == relative(modulus_of(as_built), 1e-7));
-}
-
-TEST_CASE("however many boxes away the bar lies: as many bonds are cut") {
-    State near = test::make_rough_bar({12, 4, 4}), far = near;
-    for (Vec3& position : near.particles.position) position[0] += 0.4 * near.box.lengths[0];
-    for (Vec3& position : far.particles.position) position[0] += 127.4 * far.box.lengths[0];
-    CHECK(cut_open(far) == cut_open(near));
 }
 
 TEST_CASE("the same bytes for any number of threads, states included") {

@@ -4,10 +4,8 @@
 #include <doctest/doctest.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "tests/physics/bar_files.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "tools/bend/report.h"
@@ -74,30 +72,6 @@ TEST_CASE("the dynamic slope comes to the static one as the punch slows down; wo
     options.punch_velocity = 10.0 * usual.dynamic.velocity;
     const double fast = unloading_slope(bend_dynamic(state, options, no_stop));
     CHECK(std::abs(fast - expected) > 3.0 * std::abs(unloading_slope(usual) - expected));
-}
-
-TEST_CASE("thin bars, which roll by tenths of a radian before they rest: both methods begin there and find the same forces") {
-    for (const char* name : {"dynamic_seat.kiln", "dynamic_slope.kiln", "dynamic_150.kiln"}) {
-        const State state = test::bar_of_file(name);
-        Options still = dynamic_options();
-        still.method = Method::equilibria;
-        const Result expected = bend_static(state, still, no_stop);
-        CHECK(expected.specimen.turn.norm() > 0.05);
-        const Point& full = expected.curve[6];
-        Options slow = dynamic_options();
-        const Result usual = bend_dynamic(state, slow, no_stop);
-        slow.punch_velocity = usual.dynamic.velocity / 4.0;
-        const Result moving = bend_dynamic(state, slow, no_stop);
-        const Point& peak = *std::ranges::max_element(moving.curve, {}, &Point::force);
-        CHECK(peak.force / peak.deflection == relative(full.force / full.deflection, 0.01));
-        CHECK(peak.punch == relative(full.punch, 0.02));
-        // Half unloaded.
-        const auto below = std::find_if(moving.curve.begin() + (&peak - moving.curve.data()), moving.curve.end(),
-                                        [&](const Point& point) { return point.force < 0.55 * peak.force; });
-        CHECK(below->force / below->deflection == relative(full.force / full.deflection, 0.02));
-        CHECK(moving.contacts == expected.contacts);
-        CHECK(moving.energy_error < 1e-3);
-    }
 }
 
 TEST_CASE("a punch too fast for the bar to stay in balance is named, and so is what damping took") {
