@@ -1,6 +1,7 @@
+#!/usr/bin/env bats
 # bars.bats: a short part of tests/relations/bars.py: random small bars to failure and with friction.
 bats_require_minimum_version 1.5.0
-load helper
+load helper.bash
 
 @test "random bars bent to failure balance their energies, and with friction they end with numbers" {
     run -0 "$PYTHON" "$ROOT/tests/relations/bars.py" --failure 14 --friction 6 --seed 5

@@ -3,10 +3,11 @@
 
     bars.py --failure 300 --friction 100 --seed 1
 
-Of a bar bent to failure: the curve is there, the work of the punch is positive and at most the largest force times the way it went,
-and energy.error is at most 5e-3. Of a bar with friction, at a tolerance drawn from 1e-4 to 1e-12: a document without NaN, with
-status 0, or with status 3 and a residual that is next to nothing. Packings whose largest piece does not reach from support to
-support are no bars, and others are drawn in their place. What fails is printed as the commands that repeat it.
+Of a bar bent to failure: the curve is there, the work of the punch is positive and at most the largest force times the way it
+went, and energy.error is at most 5e-3. Of a bar with friction, at a tolerance drawn from 1e-4 to 1e-12: a document without
+NaN, with status 0, or with status 3 and a residual that is next to nothing. Packings that jam, or whose largest piece does not
+reach from support to support, are no bars, and others are drawn in their place. What fails is printed as the commands that
+repeat it.
 """
 import argparse
 import json
@@ -86,7 +87,7 @@ def sweep(kind, count, dice, draw, faults_of):
         law = ["--bond-law", dice.choice(["series", "neck", "centre"])]
         commands = packing(dice) + [[program("bend"), *law, *draw(dice)]]
         output, words, status = piped(commands)
-        if status == 1 and any(each in words for each in NO_BAR):
+        if output is None or status == 1 and any(each in words for each in NO_BAR):
             continue
         tried += 1
         try:
