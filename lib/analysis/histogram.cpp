@@ -13,6 +13,7 @@ Json histogram_of(std::span<const double> values, std::size_t bins, double lower
     const double width = (upper - lower) / static_cast<double>(bins);
     std::vector<double> edges(bins + 1);
     for (std::size_t edge = 0; edge <= bins; ++edge) edges[edge] = lower + static_cast<double>(edge) * width;
+    edges[bins] = upper;  // not a rounding below the largest value
     std::vector<std::size_t> counts(bins);
     for (const double value : values)
         ++counts[width > 0.0 ? std::min(static_cast<std::size_t>((value - lower) / width), bins - 1) : 0];

@@ -11,6 +11,10 @@ namespace kiln::analysis {
 
 namespace {
 
+// A distance so little short of a shell's edge counts as on it, in the outer shell: touching spheres of one size lie on one, and
+// rounding is not to choose.
+constexpr double at_edge = 1e-9;  // relative
+
 /// True for the particles from which distances are taken; volume becomes that of the region in which they lie.
 std::vector<char> inner_particles(const State& state, double range, double& volume) {
     const std::vector<Vec3>& position = state.particles.position;
@@ -46,7 +50,8 @@ PairCorrelation pair_correlation(const State& state, double range, std::size_t b
     for (const Pair& pair : find_pairs(state.box, state.particles.position, reach)) {
         const double distance = pair_vector(state.box, state.particles.position, pair).norm();
         const int ends = inner[static_cast<std::size_t>(pair.i)] + inner[static_cast<std::size_t>(pair.j)];
-        counts[std::min(static_cast<std::size_t>(distance / width), bins - 1)] += ends;
+        const auto bin = static_cast<std::size_t>(distance / width * (1.0 + at_edge));
+        if (bin < bins) counts[bin] += ends;
     }
     const auto centres = static_cast<double>(result.centres);
     for (std::size_t bin = 0; bin < bins; ++bin) {

@@ -14,6 +14,7 @@ struct PairCorrelation {
 };
 
 /// g(r) in `bins` shells up to `range` (m): the number of centres in a shell over that of as many centres without order.
+/// A distance at the edge of a shell, to 1e-9, counts in the outer one.
 /// Along periodic axes all images count. Along free ones distances are taken from the particles that lie at least `range` inside
 /// the outermost centres, so that no shell reaches out of the body, and the mean number of centres per volume is that of their
 /// region. (M. P. Allen & D. J. Tildesley, Computer Simulation of Liquids, 2nd ed. 2017, section 8.2.) Throws Error if no particle
