@@ -133,9 +133,10 @@ def with_materials(document, materials, rows):
 
 
 def offsets(found, wanted):
-    """Differences of positions along the shortest way round the box, m, less their mean along periodic axes; rows by id."""
+    """Differences of positions along the shortest way round the box, m, less their median along periodic axes, where
+    a body has no place of its own and loose clusters drift; rows by id."""
     by_id = [document["particles"]["position"][numpy.argsort(document["particles"]["id"])] for document in (found, wanted)]
     apart = by_id[0] - by_id[1]
     edges, around = lengths(wanted), periodic(wanted)
     apart -= numpy.where(around, numpy.round((apart - apart[0]) / edges) * edges, 0.0)
-    return apart - numpy.where(around, apart.mean(axis=0), 0.0)
+    return apart - numpy.where(around, numpy.median(apart, axis=0), 0.0)

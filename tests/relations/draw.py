@@ -16,10 +16,10 @@ def sizes(trial):
     return [trial.choose(f"--diameter={median}nm", f"--distribution=lognormal:{lognormal}", f"--distribution=bimodal:{bimodal}")]
 
 
-def packing(trial, most=160, aspect=None):
-    """Options of `sinter green` for a packing of 30 to `most` particles with contacts throughout."""
-    number = int(trial.random.integers(30, most + 1))
-    aspect = aspect or trial.choose("1:1:1", "1:1:1", "2:1:1", "1:2:1.5", "1:1:0.7")
+def packing(trial, most=160, least=30):
+    """Options of `sinter green` for a packing of `least` to `most` particles with contacts throughout."""
+    number = int(trial.random.integers(least, most + 1))
+    aspect = trial.choose("1:1:1", "1:1:1", "2:1:1", "1:2:1.5", "1:1:0.7")
     method = trial.choose(["--method=loose", f"--density={trial.between(0.45, 0.52):.3f}"],
                           ["--method=affine", f"--density={trial.between(0.4, 0.48):.3f}",
                            f"--compact-to={trial.between(0.52, 0.62):.3f}"],
@@ -27,9 +27,11 @@ def packing(trial, most=160, aspect=None):
     return [f"--particles={number}", *sizes(trial), f"--aspect={aspect}", *method, f"--seed={trial.random.integers(10**6)}"]
 
 
-def green(trial, most=160, aspect=None, mixed=0.4):
-    """A packing, in the share `mixed` of all cases with a second material for some of its particles."""
-    state, = trial.states("sinter", "green", *packing(trial, most, aspect))
+def green(trial, most=160, mixed=0.4, tiny=0.0):
+    """A packing, in the share `mixed` of all cases with a second material for some of its particles, and in the share `tiny` one
+    of so few particles, 1 to 10, that they touch their own images, or one another twice."""
+    few = {"least": 1, "most": 10} if trial.random.uniform() < tiny else {"most": most}
+    state, = until_taken(lambda: trial.states("sinter", "green", *packing(trial, **few)), "jammed")
     if trial.random.uniform() < mixed:
         second = {**SECOND, "dihedral_angle": 2.0} if trial.random.uniform() < 0.3 else SECOND
         state["materials"] = [*state["materials"], second]
@@ -98,20 +100,20 @@ def until_taken(make, *refusals):
     raise Broken(f"drawn twenty times, and every time refused: {said}")
 
 
-def bonded(trial, most=200, mixed=0.3, options=()):
+def bonded(trial, most=200, tiny=0.0):
     """A packing whose overlaps became bonds."""
-    state = green(trial, most, mixed=mixed)
-    made, = trial.states("bondify", "--quiet", *options, trial.put("overlapping.kiln", state))
+    state = green(trial, most, tiny=tiny)
+    made, = trial.states("bondify", "--quiet", trial.put("overlapping.kiln", state))
     return made
 
 
 def cell(trial, most=200, *options):
     """A bonded packing that resists every strain, and its elastic tensor."""
     def make():
-        state = bonded(trial, most)
+        state = bonded(trial, most, tiny=0.2)
         return state, trial.results("analyze", "elastic", *options, trial.put("bonded.kiln", state))[0]
 
-    return until_taken(make, "some strain meets no resistance")
+    return until_taken(make, "some strain meets no resistance", "has no bonds")
 
 
 def bar(trial, most=300, mixed=0.3):

@@ -45,7 +45,7 @@ def _scattered(trial, state):
 def density_rewritten(trial):
     """Density, contacts, clusters, texture and g(r) are those of the packing, however it is written: ROUNDED (1e-9 of overlaps,
     which positions twenty boxes away round to)."""
-    state = trial.choose(green, bonded)(trial)
+    state = trial.choose(green, bonded)(trial, tiny=0.2)
     options = ["--correlation", "--shells=20", "--bins=5"]
     wanted, found = _measured(trial, state, *options), _measured(trial, _scattered(trial, state), *options, name="other.kiln")
     _same_scalars(found, wanted, 1e-9)
@@ -57,7 +57,7 @@ def density_rewritten(trial):
 
 def density_turned(trial):
     """Axes exchanged and mirrored turn the fabric tensor with them and leave all else: ROUNDED."""
-    state = trial.choose(green, bonded)(trial)
+    state = trial.choose(green, bonded)(trial, tiny=0.2)
     axes, signs = trial.random.permutation(3), trial.random.choice((-1, 1), 3)
     wanted, found = _measured(trial, state), _measured(trial, turned(state, axes, signs), name="turned.kiln")
     _same_scalars(found, wanted)
@@ -68,13 +68,14 @@ def density_turned(trial):
 
 def density_repeated(trial):
     """A cell repeated has the same density, coordination, overlaps, texture and g(r) (ROUNDED), and as many particles."""
-    state = trial.choose(green, bonded)(trial, 80)
+    state = trial.choose(green, bonded)(trial, 80, tiny=0.2)
     counts = trial.random.integers(1, 4, 3)
     options = ["--correlation", "--shells=20"]
     wanted, found = _measured(trial, state, *options), _measured(trial, repeated(state, counts), *options, name="repeated.kiln")
     for key in ("relative_density", "coordination_number", "mean_overlap_ratio", "fabric_tensor"):
         near(key, found[key], wanted[key], ROUNDED, numpy.maximum(1.0, wanted[key]).max())
-    near("overlaps", found["overlap_ratio"]["standard_deviation"], wanted["overlap_ratio"]["standard_deviation"], ROUNDED, 1.0)
+    if wanted["overlap_ratio"]:
+        near("overlaps", found["overlap_ratio"]["standard_deviation"], wanted["overlap_ratio"]["standard_deviation"], ROUNDED, 1.0)
     near("g", found["pair_correlation"]["g"], wanted["pair_correlation"]["g"], ROUNDED)
     for key in ("particles", "isolated"):
         same(key, found[key], wanted[key] * int(counts.prod()))
@@ -82,7 +83,7 @@ def density_repeated(trial):
 
 def density_scaled(trial):
     """Ratios do not change with the unit of length, lengths do (ROUNDED): factors from 1e-3 to 1e9."""
-    state, factor = trial.choose(green, bonded)(trial), 10 ** trial.between(-3, 9)
+    state, factor = trial.choose(green, bonded)(trial, tiny=0.2), 10 ** trial.between(-3, 9)
     options = ["--correlation", "--shells=20"]
     wanted, found = _measured(trial, state, *options), _measured(trial, scaled(state, factor), *options, name="scaled.kiln")
     _same_scalars(found, wanted)

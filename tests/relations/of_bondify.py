@@ -45,7 +45,7 @@ def bondify_conserves(trial):
     """What spheres lose their bonds have, to 1e-12 of the solid; positions do not move; no two spheres overlap afterwards (by more
     than rounding, 1e-12 of the radius); every overlap became a bond; a plain cylinder holds its volume (1e-9) unless it was
     clamped."""
-    state, options = green(trial, 300), _options(trial)
+    state, options = green(trial, 300, tiny=0.3), _options(trial)
     made = _made(trial, state, options)
     cubes = [float((document["particles"]["radius"].astype(numpy.longdouble) ** 3).sum()) for document in (state, made)]
     ball = 4 / 3 * numpy.pi
@@ -67,7 +67,7 @@ def bondify_conserves(trial):
 def bondify_moved(trial):
     """The same bonds after particles and box were carried elsewhere, particles moved by whole boxes, rows renumbered, axes
     exchanged and mirrored: ROUNDED."""
-    state, options = green(trial, 300), _options(trial)
+    state, options = green(trial, 300, tiny=0.3), _options(trial)
     count = len(state["particles"]["radius"])
     other = renumbered(state, trial.random.permutation(count))
     other = turned(other, trial.random.permutation(3), trial.random.choice((-1, 1), 3))
@@ -78,14 +78,14 @@ def bondify_moved(trial):
 
 def bondify_turned(trial):
     """Axes exchanged and mirrored: the same bonds, ROUNDED."""
-    state, options = green(trial, 300), _options(trial)
+    state, options = green(trial, 300, tiny=0.3), _options(trial)
     other = turned(state, trial.random.permutation(3), trial.random.choice((-1, 1), 3))
     _alike(_made(trial, other, options, "turned.kiln"), _made(trial, state, options))
 
 
 def bondify_renumbered(trial):
     """Rows in another order: the same bonds between the same ids, ROUNDED, and particles in the order given."""
-    state, options = green(trial, 300), _options(trial)
+    state, options = green(trial, 300, tiny=0.3), _options(trial)
     order = trial.random.permutation(len(state["particles"]["radius"]))
     found, wanted = _made(trial, renumbered(state, order), options, "renumbered.kiln"), _made(trial, state, options)
     same("ids", found["particles"]["id"], wanted["particles"]["id"][order])
@@ -94,7 +94,7 @@ def bondify_renumbered(trial):
 
 def bondify_doubled(trial):
     """All lengths times a power of two: the same digits, whatever the size, from 2^-20 to 2^40 (a bar of kilometres)."""
-    state, options, factor = green(trial, 300), _options(trial), 2.0 ** trial.random.integers(-20, 41)
+    state, options, factor = green(trial, 300, tiny=0.3), _options(trial), 2.0 ** trial.random.integers(-20, 41)
     found, wanted = _made(trial, scaled(state, factor), options, "scaled.kiln"), _made(trial, state, options)
     same("radii", found["particles"]["radius"], wanted["particles"]["radius"] * factor)
     for name, power in (("radius", 1), ("length", 1), ("volume", 3)):
@@ -103,7 +103,7 @@ def bondify_doubled(trial):
 
 def bondify_repeated(trial):
     """A cell repeated along the axes has every bond so many times: ROUNDED."""
-    state, options = green(trial, 120), _options(trial)
+    state, options = green(trial, 120, tiny=0.3), _options(trial)
     counts = trial.random.integers(1, 4, 3)
     times = int(counts.prod())
     found, wanted = _made(trial, repeated(state, counts), options, "repeated.kiln"), _made(trial, state, options)
@@ -132,12 +132,12 @@ def bondify_beside(trial):
 def bondify_sweep(trial):
     """Sweeps of finite decrements approach the exact method: radii differ by no more than a particle loses in a sweep, its
     contacts times the decrement, times the few sweeps by which neighbours' ends are delayed (3)."""
-    state = green(trial, 100)
+    state = green(trial, 100, tiny=0.2)
     sharing = f"--sharing={trial.choose('pair', 'particle')}"
     radius = state["particles"]["radius"].mean()
     decrement = radius * 10 ** trial.between(-5, -3)
     exact = _made(trial, state, ["--quiet", sharing])
     swept = _made(trial, state, ["--quiet", sharing, "--method=sweep", f"--decrement={decrement!r}m"])
     same("bonds", swept["bonds"]["pair"], exact["bonds"]["pair"])
-    contacts = numpy.bincount(exact["bonds"]["pair"].ravel()).max()
+    contacts = numpy.bincount(exact["bonds"]["pair"].ravel()).max(initial=0)
     near("radii", swept["particles"]["radius"], exact["particles"]["radius"], 3 * contacts * decrement, 1.0)
