@@ -44,44 +44,6 @@ def density_of(state):
     return float(4 / 3 * numpy.pi * (state["particles"]["radius"] ** 3).sum() / numpy.prod(numpy.diag(state["box"]["vectors"])))
 
 
-class Firing:
-    """Options of `sinter` apart from the times and densities wanted: temperature, faces of the box, constants of the contact."""
-
-    def __init__(self, trial, tolerance=1e-4, faces=True):
-        self.tolerance = tolerance
-        self.options = [f"--temperature={trial.between(1100, 1300):.1f}C", f"--tolerance={tolerance}"]
-        self.fixed, self.pressure = "", (0.0, 0.0, 0.0)
-        kind = trial.choose("free axes", "free axes", "fixed", "loaded", "no faces") if faces else "free axes"
-        self.boundary = "free" if kind == "no faces" else None
-        if kind == "fixed":
-            self.fixed = trial.choose("x", "y", "z", "xy", "yz", "xz")
-        if kind == "loaded":
-            self.pressure = tuple(float(trial.choose(0.0, 1e6, 5e6, 2e7)) for _ in range(3))
-        if trial.random.uniform() < 0.3:
-            self.options += [f"--alpha={trial.between(3, 5):.3f}", f"--eta={trial.choose(0.001, 0.1, 1)}"]
-
-    def arguments(self, *wanted):
-        faces = [f"--boundary={self.boundary}"] if self.boundary else []
-        if self.fixed:
-            faces.append(f"--fix={self.fixed}")
-        if any(self.pressure):
-            faces.append("--pressure=" + ",".join(f"{value!r}Pa" for value in self.pressure))
-        return [*self.options, *faces, *wanted]
-
-    def turned(self, axes):
-        """The same along other axes: new axis k is old axis axes[k]."""
-        other = object.__new__(Firing)
-        other.__dict__.update(self.__dict__)
-        other.fixed = "".join("xyz"[k] for k in range(3) if "xyz"[axes[k]] in self.fixed)
-        other.pressure = tuple(self.pressure[k] for k in axes)
-        return other
-
-
-def fired(trial, firing, state, *wanted, name="green.kiln", statuses=(0,)):
-    """What `sinter` makes of a state."""
-    return trial.states("sinter", *firing.arguments(*wanted), trial.put(name, state), statuses=statuses)
-
-
 def goal(trial, state, least=0.01, most=0.06):
     """A density somewhat above that of a state."""
     return density_of(state) + trial.between(least, most)

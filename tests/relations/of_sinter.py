@@ -1,153 +1,96 @@
-"""of_sinter.py: relations of `sinter`.
-
-Firings are short, a few thousandths of density, at a tolerance of 1e-6: where a change of the input only puts floating-point sums
-into another order, what is different then comes of the solves, and of single contacts that form a little sooner or later. Over a
-whole firing packings branch, and small ones differ by far more than the tolerance (docs/sintering.md).
-"""
+"""of_sinter.py: relations of `sinter`. firings.py says what FIRST, REORDERED and SOLVED are."""
 import copy
-import json
 
 import numpy
 
-from changes import (carried, lengths, moved_by_boxes, offsets, renumbered, repeated, scaled, translated, turned,
-                     with_materials)
-from draw import Firing, density_of, fired, green, until_taken
+from changes import carried, lengths, moved_by_boxes, renumbered, repeated, scaled, translated, turned, with_materials
+from draw import density_of
+from firings import (FIRST, REORDERED, SOLVED, STEPS, alike, drawn_firing, fired, held, stress_unit, told_at_first,
+                     viscosity_unit)
 from trial import near, same, summary
-
-# What the first steps of two runs of one packing with sums in another order may differ by, in density: solves end at 1e-8 of a
-# step's motion, and 1.5e-8 was the most in 50 pairs of runs.
-FIRST = 2e-7
-# The same in the end, a few dozen steps later. Half of all pairs of runs differ by less than 1e-11, but where a contact forms
-# sooner or later by up to 1e-3; and of positions, in radii: of half of the particles, and of one that such a contact holds.
-REORDERED, PLACES, PLACE = 1e-3, 2e-3, 0.2
-# Viscosities and stresses are solved to 1e-4. They are compared at the beginning, before contacts can form.
-SOLVED = 1e-3
-# What two runs with other steps may differ by, in tolerances of the run: each is allowed one over a whole firing.
-STEPS = 3.0
-
-
-def _alike(found, wanted):
-    """Two states of the same particles after the same time."""
-    near("time", found["time"], wanted["time"], 1e-12)
-    near("density after a step", found["first"]["relative_density"], wanted["first"]["relative_density"], FIRST)
-    near("density", density_of(found), density_of(wanted), REORDERED)
-    near("edges", lengths(found), lengths(wanted), REORDERED)
-    apart = numpy.linalg.norm(offsets(found, wanted), axis=1) / wanted["particles"]["radius"].mean()
-    near("median of offsets, in radii", numpy.median(apart), 0, PLACES, 1.0)
-    near("offset of a particle, in radii", apart.max(), 0, PLACE, 1.0)
-
-
-def _drawn(trial, tolerance=1e-6, gain=(0.001, 0.005), most=160, mixed=0.4, faces=True, free=True):
-    """A packing, a firing and the time, s, that it takes to become somewhat denser. A packing that is too loose for that is drawn
-    anew."""
-    def make():
-        state, firing = green(trial, most, mixed=mixed), Firing(trial, tolerance, faces)
-        if not free:
-            firing.boundary = None
-        reached, = fired(trial, firing, state, f"--to-density={density_of(state) + trial.between(*gain)!r}")
-        return state, firing, reached["time"]
-
-    return until_taken(make, "cannot be reached", "has shrunk into itself")
-
-
-def _held(trial, firing, state, time, *more, name="changed.kiln"):
-    """A state fired to a time, s, with what the history says of the first step as `first`."""
-    until = [f"--at-time={float(time)!r}s"] if time is not None else []
-    end, = fired(trial, firing, state, *until, "--history=history.jsonl", *more, name=name)
-    end["first"] = json.loads(trial.bytes_of("history.jsonl").split(b"\n", 1)[0])
-    return end
-
-
-def _at_first(trial, firing, state, time):
-    """What is told of a state, viscosities among it, after a millionth of a time, s."""
-    return summary(_held(trial, firing, state, 1e-6 * time, "--report=viscosity"))
-
-
-def _unit(said):
-    """A stress (Pa) that others are compared with: the sintering stress, and a hundredth of a usual one where no contacts reach
-    through."""
-    return max(said["sintering_stress"], 1e4)
 
 
 def sinter_translated(trial):
     """Particles of a periodic box all moved alike sinter alike: REORDERED."""
-    state, firing, time = _drawn(trial, free=False)
+    state, firing, time = drawn_firing(trial, free=False)
     other = translated(state, lengths(state) * trial.random.uniform(-1.5, 1.5, 3))
-    _alike(_held(trial, firing, other, time), _held(trial, firing, state, time, name="green.kiln"))
+    alike(held(trial, firing, other, time), held(trial, firing, state, time, name="green.kiln"))
 
 
 def sinter_carried(trial):
     """Particles and box moved together, up to a hundred boxes away, sinter alike: REORDERED."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     shift = lengths(state) * trial.random.uniform(-1, 1, 3) * trial.choose(1, 100)
-    found = _held(trial, firing, carried(state, shift), time)
-    _alike(carried(found, -shift), _held(trial, firing, state, time, name="green.kiln"))
+    found = held(trial, firing, carried(state, shift), time)
+    alike(carried(found, -shift), held(trial, firing, state, time, name="green.kiln"))
 
 
 def sinter_moved_by_boxes(trial):
     """Each particle of a periodic box moved by some whole boxes is the same packing: REORDERED."""
-    state, firing, time = _drawn(trial, free=False)
+    state, firing, time = drawn_firing(trial, free=False)
     boxes = trial.random.integers(-100, 101, (len(state["particles"]["radius"]), 3))
-    _alike(_held(trial, firing, moved_by_boxes(state, boxes), time), _held(trial, firing, state, time, name="green.kiln"))
+    alike(held(trial, firing, moved_by_boxes(state, boxes), time), held(trial, firing, state, time, name="green.kiln"))
 
 
 def sinter_renumbered(trial):
     """Particles in another order sinter alike and come back in that order: REORDERED."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     order = trial.random.permutation(len(state["particles"]["radius"]))
-    wanted, found = _held(trial, firing, state, time, name="green.kiln"), _held(trial, firing, renumbered(state, order), time)
+    wanted = held(trial, firing, state, time, name="green.kiln")
+    found = held(trial, firing, renumbered(state, order), time)
     for name in ("id", "radius", "material"):
         same(name, found["particles"][name], wanted["particles"][name][order])
-    _alike(found, wanted)
+    alike(found, wanted)
 
 
 def sinter_turned(trial):
     """Axes exchanged and mirrored, those of --fix and --pressure with them: the same, turned (REORDERED), stresses and viscosities
     too (SOLVED)."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     axes, signs = trial.random.permutation(3), trial.random.choice((-1, 1), 3)
-    wanted = _held(trial, firing, state, time, name="green.kiln")
-    _alike(_held(trial, firing.turned(axes), turned(state, axes, signs), time), turned(wanted, axes, signs))
+    wanted = held(trial, firing, state, time, name="green.kiln")
+    alike(held(trial, firing.turned(axes), turned(state, axes, signs), time), turned(wanted, axes, signs))
     if firing.boundary:
         return
-    here, there = _at_first(trial, firing.turned(axes), turned(state, axes, signs), time), _at_first(trial, firing, state, time)
-    near("stress", here["stress"], numpy.array(there["stress"])[axes], SOLVED, _unit(there))
-    near("viscosity", here["viscosity"], numpy.array(there["viscosity"])[numpy.ix_(axes, axes)], SOLVED)
+    there = told_at_first(trial, firing, state, time)
+    here = told_at_first(trial, firing.turned(axes), turned(state, axes, signs), time)
+    near("stress", here["stress"], numpy.array(there["stress"])[axes], SOLVED, stress_unit(there))
+    near("viscosity", here["viscosity"], numpy.array(there["viscosity"])[numpy.ix_(axes, axes)], SOLVED, viscosity_unit(there, time))
 
 
 def sinter_repeated(trial):
     """A periodic cell two or three times in a row is the same material: density after a time (REORDERED), coordination, stresses
     and viscosities (SOLVED)."""
-    state, firing, time = _drawn(trial, most=80, free=False)
+    state, firing, time = drawn_firing(trial, most=80, free=False)
     counts = numpy.roll((trial.choose(2, 3), 1, 1), trial.random.integers(3))
-    wanted = _held(trial, firing, state, time, name="green.kiln")
-    found = _held(trial, firing, repeated(state, counts), time)
+    wanted = held(trial, firing, state, time, name="green.kiln")
+    found = held(trial, firing, repeated(state, counts), time)
     near("density after a step", found["first"]["relative_density"], wanted["first"]["relative_density"], FIRST)
     near("density", density_of(found), density_of(wanted), REORDERED)
     near("edges", lengths(found), lengths(wanted) * counts, REORDERED)
-    here, there = _at_first(trial, firing, repeated(state, counts), time), _at_first(trial, firing, state, time)
+    here, there = told_at_first(trial, firing, repeated(state, counts), time), told_at_first(trial, firing, state, time)
     near("coordination", here["coordination_number"], there["coordination_number"], 1e-12)
-    near("stress", here["stress"], there["stress"], SOLVED, _unit(there))
-    near("viscosity", here["viscosity"], there["viscosity"], SOLVED)
-    near("sintering stress", here["sintering_stress"], there["sintering_stress"], SOLVED)
+    near("stress", here["stress"], there["stress"], SOLVED, stress_unit(there))
+    near("viscosity", here["viscosity"], there["viscosity"], SOLVED, viscosity_unit(there, time))
+    near("sintering stress", here["sintering_stress"], there["sintering_stress"], SOLVED, stress_unit(there))
 
 
 def sinter_scaled(trial):
     """All lengths times k take k^4 times as long under 1/k of the pressure (Herring 1950): REORDERED, for k from 1e-2 to 1e4. The
     sintering stress is 1/k, viscosities k^3 of what they were (SOLVED)."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     factor = trial.choose(2.0 ** trial.random.integers(-6, 13), 10 ** trial.between(-2, 4))
-    wanted = _held(trial, firing, state, time, name="green.kiln")
-    there = None if firing.boundary else _at_first(trial, firing, state, time)
+    wanted = held(trial, firing, state, time, name="green.kiln")
+    there = None if firing.boundary else told_at_first(trial, firing, state, time)
     firing.pressure = tuple(value / factor for value in firing.pressure)
-    found = scaled(_held(trial, firing, scaled(state, factor), time * factor**4), 1 / factor)
+    found = scaled(held(trial, firing, scaled(state, factor), time * factor**4), 1 / factor)
     found["time"] /= factor**4
-    _alike(found, wanted)
+    alike(found, wanted)
     if there is None:
         return
-    here = _at_first(trial, firing, scaled(state, factor), time * factor**4)
-    near("sintering stress", here["sintering_stress"] * factor, there["sintering_stress"], SOLVED)
-    near("viscosity", numpy.array(here["viscosity"]) / factor**3, there["viscosity"], SOLVED)
+    here = told_at_first(trial, firing, scaled(state, factor), time * factor**4)
+    near("sintering stress", here["sintering_stress"] * factor, there["sintering_stress"], SOLVED, stress_unit(there))
+    near("viscosity", numpy.array(here["viscosity"]) / factor**3, there["viscosity"], SOLVED, viscosity_unit(there, time))
 
 
 def _with_each_material(state, change):
@@ -159,42 +102,42 @@ def _with_each_material(state, change):
 
 def sinter_diffusion(trial):
     """Diffusion k times as fast in every material takes 1/k of the time, from 1e-9 to 1e9: REORDERED."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     factor = 10 ** trial.between(-9, 9)
 
     def faster(material):
         material["grain_boundary_diffusion"]["prefactor"] *= factor
 
-    found = _held(trial, firing, _with_each_material(state, faster), time / factor)
+    found = held(trial, firing, _with_each_material(state, faster), time / factor)
     found["time"] *= factor
-    _alike(found, _held(trial, firing, state, time, name="green.kiln"))
+    alike(found, held(trial, firing, state, time, name="green.kiln"))
 
 
 def sinter_surface_energy(trial):
     """Surface energy k times as large, and pressure too, is k times the speed (REORDERED) and the stress (SOLVED), for k from 1e-4
     to 1e4."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     factor = 10 ** trial.between(-4, 4)
 
     def stronger(material):
         material["surface_energy"] *= factor
 
-    wanted = _held(trial, firing, state, time, name="green.kiln")
-    there = None if firing.boundary else _at_first(trial, firing, state, time)
+    wanted = held(trial, firing, state, time, name="green.kiln")
+    there = None if firing.boundary else told_at_first(trial, firing, state, time)
     firing.pressure = tuple(value * factor for value in firing.pressure)
-    found = _held(trial, firing, _with_each_material(state, stronger), time / factor)
+    found = held(trial, firing, _with_each_material(state, stronger), time / factor)
     found["time"] *= factor
-    _alike(found, wanted)
+    alike(found, wanted)
     if there is None:
         return
-    here = _at_first(trial, firing, _with_each_material(state, stronger), time / factor)
-    near("stress", numpy.array(here["stress"]) / factor, there["stress"], SOLVED, _unit(there))
+    here = told_at_first(trial, firing, _with_each_material(state, stronger), time / factor)
+    near("stress", numpy.array(here["stress"]) / factor, there["stress"], SOLVED, stress_unit(there))
 
 
 def sinter_in_parts(trial):
     """Fired to a density and on to another, or for two times one after the other, as in one run: other steps, so STEPS
     tolerances. The densities asked for are met to the 1e-6 that --to-density grants itself."""
-    state, firing, _ = _drawn(trial, tolerance=1e-4)
+    state, firing, _ = drawn_firing(trial, tolerance=1e-4)
     densities = [density_of(state) + gain for gain in (trial.between(0.002, 0.004), trial.between(0.006, 0.01))]
     first, last = fired(trial, firing, state, "--to-density=" + ",".join(map(repr, densities)))
     middle, = fired(trial, firing, state, f"--to-density={densities[0]!r}", name="start.kiln")
@@ -203,21 +146,21 @@ def sinter_in_parts(trial):
         near("density asked for", density_of(found), wanted, 2e-6)
     rate = (densities[1] - densities[0]) / (last["time"] - first["time"])
     near("time, as a density", (end["time"] - last["time"]) * rate, 0, STEPS * firing.tolerance, 1.0)
-    by_time = _held(trial, firing, _held(trial, firing, state, first["time"]), last["time"])
+    by_time = held(trial, firing, held(trial, firing, state, first["time"]), last["time"])
     near("density after two times", density_of(by_time), densities[1], STEPS * firing.tolerance)
 
 
 def sinter_time_of_density(trial):
     """At the time at which --to-density says it is reached, --at-time has that density: only the last steps differ, so within the
     tolerance."""
-    state, firing, _ = _drawn(trial, tolerance=1e-4)
+    state, firing, _ = drawn_firing(trial, tolerance=1e-4)
     wanted, = fired(trial, firing, state, f"--to-density={density_of(state) + trial.between(0.002, 0.02)!r}")
-    near("density", density_of(_held(trial, firing, state, wanted["time"])), density_of(wanted), firing.tolerance)
+    near("density", density_of(held(trial, firing, state, wanted["time"])), density_of(wanted), firing.tolerance)
 
 
 def sinter_every(trial):
     """--every T writes the states of --at-time T,2T,3T: the same steps and the same bytes."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     span = float(f"{time / 3:.3g}")
     listed = fired(trial, firing, state, f"--at-time={span!r}s,{2 * span!r}s,{3 * span!r}s")
     every = fired(trial, firing, state, f"--every={span!r}s", f"--at-time={3 * span!r}s")
@@ -230,40 +173,40 @@ def sinter_every(trial):
 def sinter_later(trial):
     """The time of the input counts on: a state that is older by T is fired to a time later by T alike. Times round at 1e-16 of T,
     which is as long as the run, or a thousand or a million times: REORDERED."""
-    state, firing, time = _drawn(trial)
+    state, firing, time = drawn_firing(trial)
     earlier = trial.choose(1, 1e3, 1e6) * trial.between(0.5, 2) * time
-    found = _held(trial, firing, {**state, "time": earlier}, earlier + time)
+    found = held(trial, firing, {**state, "time": earlier}, earlier + time)
     found["time"] = time
-    _alike(found, _held(trial, firing, state, time, name="green.kiln"))
+    alike(found, held(trial, firing, state, time, name="green.kiln"))
 
 
 def sinter_schedule(trial):
     """A schedule that only holds is --temperature and --at-time: REORDERED."""
-    state, firing, time = _drawn(trial)
-    wanted = _held(trial, firing, state, time, name="green.kiln")
+    state, firing, time = drawn_firing(trial)
+    wanted = held(trial, firing, state, time, name="green.kiln")
     firing.options[0] = f"--schedule={firing.options[0].split('=')[1]} {time!r}s"
-    _alike(_held(trial, firing, state, None), wanted)
+    alike(held(trial, firing, state, None), wanted)
 
 
 def sinter_two_names(trial):
     """One material under two names, at random for each particle, and their contact stated as what the materials give anyway:
     REORDERED."""
-    state, firing, time = _drawn(trial, mixed=0.0)
+    state, firing, time = drawn_firing(trial, mixed=0.0)
     alumina = state["materials"][0]
     twins = with_materials(state, [{**alumina, "name": "b"}, {**alumina, "name": "a"}],
                            trial.random.integers(0, 2, len(state["particles"]["radius"])))
     if trial.random.uniform() < 0.5:
         twins["contacts"] = [{"materials": ["a", "b"], "surface_energy": alumina["surface_energy"]}]
-    _alike(_held(trial, firing, twins, time), _held(trial, firing, state, time, name="green.kiln"))
+    alike(held(trial, firing, twins, time), held(trial, firing, state, time, name="green.kiln"))
 
 
 def sinter_conserves(trial):
     """Particles, radii, materials and unknown arrays come back as they were, bit by bit; the density told is that of spheres in
     the box (1e-12); stresses are the pressure given on loaded axes and none on free ones that contacts reach through (SOLVED);
     viscosities are symmetric, and no strain rate gives work (1e-4, as they are solved)."""
-    state, firing, time = _drawn(trial, free=False)
+    state, firing, time = drawn_firing(trial, free=False)
     state["particles"]["colour"] = trial.random.integers(0, 255, (len(state["particles"]["radius"]), 2)).astype("u1")
-    found = _held(trial, firing, state, time, "--report=viscosity")
+    found = held(trial, firing, state, time, "--report=viscosity")
     for name in ("id", "radius", "material", "colour"):
         same(name, found["particles"][name], state["particles"][name])
     said = summary(found)
@@ -283,16 +226,16 @@ def sinter_conserves(trial):
 def sinter_explicit(trial):
     """The explicit method, its mass scaled by k^5 for lengths k times as large as relaxation times ask, obeys the same scaling;
     turned axes turn the result. Sums alone differ, over thousands of steps: REORDERED."""
-    state, firing, time = _drawn(trial, tolerance=1e-4, gain=(0.0005, 0.001), most=60, mixed=0.0)
+    state, firing, time = drawn_firing(trial, tolerance=1e-4, gain=(0.0005, 0.001), most=60, mixed=0.0)
     mass = trial.choose(1e20, 1e21)
     explicit = [*firing.options, "--method=explicit"]
     firing.options = [*explicit, f"--mass-scaling={mass!r}"]
-    wanted = _held(trial, firing, state, time, name="green.kiln")
+    wanted = held(trial, firing, state, time, name="green.kiln")
     axes, signs = trial.random.permutation(3), trial.random.choice((-1, 1), 3)
-    _alike(_held(trial, firing.turned(axes), turned(state, axes, signs), time), turned(wanted, axes, signs))
+    alike(held(trial, firing.turned(axes), turned(state, axes, signs), time), turned(wanted, axes, signs))
     factor = 2.0 ** trial.random.integers(-2, 3)
     firing.options = [*explicit, f"--mass-scaling={mass * factor**5!r}"]
     firing.pressure = tuple(value / factor for value in firing.pressure)
-    found = scaled(_held(trial, firing, scaled(state, factor), time * factor**4), 1 / factor)
+    found = scaled(held(trial, firing, scaled(state, factor), time * factor**4), 1 / factor)
     found["time"] /= factor**4
-    _alike(found, wanted)
+    alike(found, wanted)

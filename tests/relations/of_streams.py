@@ -7,7 +7,8 @@ import time
 
 import numpy
 
-from draw import Firing, bar, cell, density_of, fired, green, until_taken
+from draw import bar, cell, density_of, green, until_taken
+from firings import Firing, fired
 from trial import Broken, program, same
 
 
