@@ -55,7 +55,8 @@ def sinter_turned(trial):
     there = told_at_first(trial, firing, state, time)
     here = told_at_first(trial, firing.turned(axes), turned(state, axes, signs), time)
     near("stress", here["stress"], numpy.array(there["stress"])[axes], SOLVED, stress_unit(there))
-    near("viscosity", here["viscosity"], numpy.array(there["viscosity"])[numpy.ix_(axes, axes)], SOLVED, viscosity_unit(there, time))
+    wanted = numpy.array(there["viscosity"])[numpy.ix_(axes, axes)]
+    near("viscosity", here["viscosity"], wanted, SOLVED, viscosity_unit(there, time))
 
 
 def sinter_repeated(trial):
