@@ -8,11 +8,12 @@
 #include <random>
 
 #include "core/neighbours.h"
+#include "tests/physics/relative.h"
 #include "bonding/bondify.h"
 
 using namespace kiln;
 using namespace kiln::bonding;
-using doctest::Approx;
+using kiln::test::relative;
 
 namespace {
 
@@ -80,51 +81,52 @@ TEST_CASE("bondify: two equal spheres end with radius d/2 and a bond of what the
     for (const double scale : {1e-9, 1.0}) {
         const double radius = 50.0 * scale, distance = 90.0 * scale;
         const Shrunk shrunk = shrink_line({radius, radius}, {{0, 1, distance}});
-        CHECK(shrunk.radius[0] == Approx(distance / 2.0).epsilon(1e-15));
-        CHECK(shrunk.radius[1] == Approx(distance / 2.0).epsilon(1e-15));
-        CHECK(shrunk.volume[0] == Approx(2.0 * (sphere(radius) - sphere(distance / 2.0))).epsilon(1e-13));
+        CHECK(shrunk.radius[0] == relative(distance / 2.0, 1e-15));
+        CHECK(shrunk.radius[1] == relative(distance / 2.0, 1e-15));
+        CHECK(shrunk.volume[0] == relative(2.0 * (sphere(radius) - sphere(distance / 2.0)), 1e-13));
     }
 }
 
 TEST_CASE("bondify: two unequal spheres lose the same length") {
     const Shrunk shrunk = shrink_line({50.0, 30.0}, {{0, 1, 72.0}});
-    CHECK(shrunk.radius[0] == Approx(46.0));
-    CHECK(shrunk.radius[1] == Approx(26.0));
-    CHECK(shrunk.volume[0] == Approx(sphere(50.0) - sphere(46.0) + sphere(30.0) - sphere(26.0)));
+    CHECK(shrunk.radius[0] == relative(46.0, 1e-12));
+    CHECK(shrunk.radius[1] == relative(26.0, 1e-12));
+    CHECK(shrunk.volume[0] == relative(sphere(50.0) - sphere(46.0) + sphere(30.0) - sphere(26.0), 1e-12));
 }
 
 TEST_CASE("bondify: three in a row, the middle one shrinks twice as fast") {
     const Shrunk pair = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 94.0}, {1, 2, 94.0}});
-    CHECK(pair.radius[0] == Approx(48.0));
-    CHECK(pair.radius[1] == Approx(46.0));
-    CHECK(pair.volume[0] == Approx(sphere(50.0) - sphere(48.0) + (sphere(50.0) - sphere(46.0)) / 2.0));
-    CHECK(pair.volume[1] == Approx(pair.volume[0]));
+    CHECK(pair.radius[0] == relative(48.0, 1e-12));
+    CHECK(pair.radius[1] == relative(46.0, 1e-12));
+    CHECK(pair.volume[0] == relative(sphere(50.0) - sphere(48.0) + (sphere(50.0) - sphere(46.0)) / 2.0, 1e-12));
+    CHECK(pair.volume[1] == relative(pair.volume[0], 1e-12));
 
     const Shrunk particle = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 94.0}, {1, 2, 94.0}}, Sharing::particle);
-    CHECK(particle.radius[0] == Approx(47.0));
-    CHECK(particle.radius[1] == Approx(47.0));
-    CHECK(particle.volume[0] == Approx(1.5 * (sphere(50.0) - sphere(47.0))));
+    CHECK(particle.radius[0] == relative(47.0, 1e-12));
+    CHECK(particle.radius[1] == relative(47.0, 1e-12));
+    CHECK(particle.volume[0] == relative(1.5 * (sphere(50.0) - sphere(47.0)), 1e-12));
 }
 
 TEST_CASE("bondify: after the first separation the other pair goes on alone, by hand") {
     // Overlaps 3 and 9: the first ends at s = 1 with radii 49, 48, 49; the second has 6 left, 3 from each: 46 and 45.
     const Shrunk shrunk = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 97.0}, {1, 2, 91.0}});
-    CHECK(shrunk.radius[0] == Approx(49.0));
-    CHECK(shrunk.radius[1] == Approx(45.0));
-    CHECK(shrunk.radius[2] == Approx(46.0));
+    CHECK(shrunk.radius[0] == relative(49.0, 1e-12));
+    CHECK(shrunk.radius[1] == relative(45.0, 1e-12));
+    CHECK(shrunk.radius[2] == relative(46.0, 1e-12));
     const double shared = (sphere(50.0) - sphere(48.0)) / 2.0;
-    CHECK(shrunk.volume[0] == Approx(sphere(50.0) - sphere(49.0) + shared));
-    CHECK(shrunk.volume[1] == Approx(sphere(50.0) - sphere(46.0) + shared + sphere(48.0) - sphere(45.0)));
+    CHECK(shrunk.volume[0] == relative(sphere(50.0) - sphere(49.0) + shared, 1e-12));
+    CHECK(shrunk.volume[1] == relative(sphere(50.0) - sphere(46.0) + shared + sphere(48.0) - sphere(45.0), 1e-12));
 }
 
 TEST_CASE("bondify: a particle that overlaps its own periodic images ends with half the box edge") {
     State state = make_state({Vec3(0.3, 0.3, 0.3)}, {0.55}, 1.0, true);
     const Summary summary = bonding::bondify(state, Options(), never_stop);
     CHECK(summary.pairs == 3);
-    CHECK(state.particles.radius[0] == Approx(0.5).epsilon(1e-14));
-    for (const double volume : state.bonds->volume) CHECK(volume == Approx((sphere(0.55) - sphere(0.5)) / 3.0));
+    CHECK(state.particles.radius[0] == relative(0.5, 1e-14));
+    for (const double volume : state.bonds->volume) CHECK(volume == relative((sphere(0.55) - sphere(0.5)) / 3.0, 1e-12));
     for (const double radius : state.bonds->radius)
-        CHECK(physics::bond_volume(1.0, 0.5, 0.5, radius, physics::BondVolume::cylinder) == Approx(state.bonds->volume[0]));
+        CHECK(physics::bond_volume(1.0, 0.5, 0.5, radius, physics::BondVolume::cylinder) ==
+              relative(state.bonds->volume[0], 1e-12));
 }
 
 TEST_CASE("bondify: volume is conserved and nothing overlaps in a packing, for either sharing") {
@@ -135,7 +137,7 @@ TEST_CASE("bondify: volume is conserved and nothing overlaps in a packing, for e
         options.sharing = sharing;
         const Summary summary = bonding::bondify(state, options, never_stop);
         CHECK(summary.pairs > 1000);
-        CHECK(particle_volume(state.particles) + sum(state.bonds->volume) == Approx(before).epsilon(1e-12));
+        CHECK(particle_volume(state.particles) + sum(state.bonds->volume) == relative(before, 1e-12));
         CHECK(std::abs(summary.volume_error) < 1e-13);
         for (std::size_t bond = 0; bond < state.bonds->size(); ++bond) {
             const auto [first, second] = state.bonds->pair[bond];
@@ -155,7 +157,7 @@ TEST_CASE("bondify: the event queue agrees with a search through all pairs for e
     State state = make_packing(4, 11);
     const std::vector<double> radius = shrink_all(state);
     bonding::bondify(state, Options(), never_stop);
-    for (std::size_t row = 0; row < radius.size(); ++row) CHECK(state.particles.radius[row] == Approx(radius[row]).epsilon(1e-12));
+    for (std::size_t row = 0; row < radius.size(); ++row) CHECK(state.particles.radius[row] == relative(radius[row], 1e-12));
 }
 
 TEST_CASE("bondify: the order of the particles and mirroring do not matter") {
@@ -170,9 +172,9 @@ TEST_CASE("bondify: the order of the particles and mirroring do not matter") {
     const Summary two = bonding::bondify(mirrored, Options(), never_stop);
     for (std::size_t row = 0; row < count; ++row)
         CHECK(mirrored.particles.radius[row] ==
-              Approx(state.particles.radius[static_cast<std::size_t>(order[row])]).epsilon(1e-12));
-    CHECK(two.mean_diameter == Approx(one.mean_diameter).epsilon(1e-12));
-    CHECK(two.mean_length == Approx(one.mean_length).epsilon(1e-12));
+              relative(state.particles.radius[static_cast<std::size_t>(order[row])], 1e-12));
+    CHECK(two.mean_diameter == relative(one.mean_diameter, 1e-12));
+    CHECK(two.mean_length == relative(one.mean_length, 1e-12));
 }
 
 TEST_CASE("bondify: a regular packing, where all events fall together, keeps its symmetry") {
@@ -183,8 +185,8 @@ TEST_CASE("bondify: a regular packing, where all events fall together, keeps its
     State state = make_state(position, std::vector<double>(27, 0.53), 3.0, true);
     const Summary summary = bonding::bondify(state, Options(), never_stop);
     CHECK(summary.bonds == 81);
-    for (const double radius : state.particles.radius) CHECK(radius == Approx(0.5).epsilon(1e-14));
-    for (const double volume : state.bonds->volume) CHECK(volume == Approx((sphere(0.53) - sphere(0.5)) / 3.0).epsilon(1e-12));
+    for (const double radius : state.particles.radius) CHECK(radius == relative(0.5, 1e-14));
+    for (const double volume : state.bonds->volume) CHECK(volume == relative((sphere(0.53) - sphere(0.5)) / 3.0, 1e-12));
 }
 
 TEST_CASE("bondify: a metre and a nanometre give the same shape") {
@@ -196,8 +198,8 @@ TEST_CASE("bondify: a metre and a nanometre give the same shape") {
     bonding::bondify(nanometres, Options(), never_stop);
     REQUIRE(metres.bonds->size() == nanometres.bonds->size());
     for (std::size_t bond = 0; bond < metres.bonds->size(); ++bond) {
-        CHECK(nanometres.bonds->radius[bond] * 1e9 == Approx(metres.bonds->radius[bond]).epsilon(1e-9));
-        CHECK(nanometres.bonds->length[bond] * 1e9 == Approx(metres.bonds->length[bond]).epsilon(1e-9));
+        CHECK(nanometres.bonds->radius[bond] * 1e9 == relative(metres.bonds->radius[bond], 1e-9));
+        CHECK(nanometres.bonds->length[bond] * 1e9 == relative(metres.bonds->length[bond], 1e-9));
     }
 }
 
@@ -247,8 +249,8 @@ TEST_CASE("bondify: a small particle deep inside a large one stops, the large on
         options.decrement = 1e-6;
         const Summary summary = bonding::bondify(state, options, never_stop);
         CHECK(summary.stopped == 1);
-        CHECK(state.particles.radius[1] == Approx(smallest_share * 0.1));
-        CHECK(state.particles.radius[0] == Approx(0.599).epsilon(1e-5));
+        CHECK(state.particles.radius[1] == relative(smallest_share * 0.1, 1e-12));
+        CHECK(state.particles.radius[0] == relative(0.599, 1e-5));
         CHECK(std::abs(summary.volume_error) < 1e-12);
         CHECK(summary.clamped == 1);
         CHECK(state.bonds->radius[0] == state.particles.radius[1]);
@@ -274,6 +276,6 @@ TEST_CASE("bondify: thin bonds are counted, and left out with their volume if so
     const Summary drop = bonding::bondify(dropped, options, never_stop);
     CHECK(drop.bonds == 1);
     CHECK(drop.thin == 1);
-    CHECK(drop.dropped_volume == Approx(kept.bonds->volume[1]));
+    CHECK(drop.dropped_volume == relative(kept.bonds->volume[1], 1e-12));
     CHECK(dropped.bonds->pair[0] == std::array<std::int32_t, 2>{0, 1});
 }
