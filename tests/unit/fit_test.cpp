@@ -114,6 +114,14 @@ TEST_CASE("fit: too few points, points alike, no freedom") {
     CHECK_THROWS_WITH_AS(porosity_law("knutsen"), doctest::Contains("knudsen, spriggs, coble-kingery"), kiln::Error);
 }
 
+TEST_CASE("fit: a law of one parameter through points of one density is their mean, with its standard error") {
+    const std::vector<double> porosity(3, 0.2), modulus{200.0, 210.0, 220.0}, weight(3, 1.0);
+    const Fit fit = fit_law(porosity_law("gibson-ashby"), porosity, modulus, weight);
+    CHECK(fit.parameters[0] == relative(210.0 / 0.64, 1e-10));
+    REQUIRE(fit.covariance);
+    CHECK(std::sqrt((*fit.covariance)(0, 0)) == relative(10.0 / std::sqrt(3.0) / 0.64, 1e-8));
+}
+
 TEST_CASE("fit: the law that made the points has the least AICc, and its band holds a law near by") {
     const std::vector<double> at{0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4}, weights(at.size(), 1.0);
     const PorosityLaw& made_by = porosity_law("pabst");
