@@ -14,10 +14,15 @@ inline double shear_correction(double height, double span, double poisson_ratio)
     return 1.0 + 2.4 * (1.0 + poisson_ratio) * slenderness * slenderness;
 }
 
-/// Young's modulus, Pa, shear included: E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].
+/// Young's modulus, Pa, of a slender bar, whose shear does not count: E = S L^3/(4 b h^3).
 /// slope S: force over deflection under the load, N/m; span L, width b, height h in m.
+inline double slender_modulus(double slope, double span, double width, double height) {
+    return slope * span * span * span / (4.0 * width * height * height * height);
+}
+
+/// The same, shear included: E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].
 inline double bending_modulus(double slope, double span, double width, double height, double poisson_ratio) {
-    return slope * span * span * span / (4.0 * width * height * height * height) * shear_correction(height, span, poisson_ratio);
+    return slender_modulus(slope, span, width, height) * shear_correction(height, span, poisson_ratio);
 }
 
 /// Span, m, of the bar that would show the same deflection with its forces at the ends of the span. Here the supports' resultant

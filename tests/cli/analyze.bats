@@ -108,6 +108,17 @@ modulus_line() {
     assert_equal "$(value '[.points, .relative_density, .bond_law, .method] | tostring')" '[4,0.7,"series","static"]'
 }
 
+@test "analyze modulus: a document need not have Poisson's ratio, which only the shear correction requires" {
+    jq -c 'del(.poisson_ratio)' "$DATA/bending_test.jsonl" >published.jsonl
+    run -0 "$ANALYZE" modulus --poisson-ratio 0.25 published.jsonl
+    near "$(value .young_modulus)" 6.4375e10 1e-9
+    run -0 "$ANALYZE" modulus --shear none published.jsonl
+    near "$(value .young_modulus)" 6.25e10 1e-9
+    assert_equal "$(value .shear_correction)" 1
+    run -1 "$ANALYZE" modulus published.jsonl
+    assert_output --partial "document 1: has no poisson_ratio, which the shear correction requires; give --poisson-ratio"
+}
+
 @test "analyze modulus: the window, too few points, and no unloading" {
     run -0 "$ANALYZE" modulus --window 1/2:1/3 "$DATA/bending_test.jsonl"
     assert_equal "$(value '[.points, .standard_error] | tostring')" '[2,null]'

@@ -148,17 +148,24 @@ double size_of(const io::Document& document, const std::string& key, const std::
     return positive_at(document, key);
 }
 
+/// Poisson's ratio of the shear correction: the option's, else the document's, which need not have one.
+double poisson_ratio_of(const io::Document& document, const Options& options) {
+    if (options.poisson_ratio) return *options.poisson_ratio;
+    if (!document.header.contains("poisson_ratio"))
+        throw Error(document.place +
+                    ": has no poisson_ratio, which the shear correction requires; give --poisson-ratio or --shear none");
+    return number_at(document, "poisson_ratio", -1.0);
+}
+
 Json modulus_of(const io::Document& document, const Options& options) {
     expect_format(document, {"dem-bend"}, "modulus");
     const double span = size_of(document, "span", options.span);
     const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
-    const double poisson_ratio = options.poisson_ratio.value_or(number_at(document, "poisson_ratio", -1.0));
     Json density = options.density ? Json(*options.density) : Json();
     if (!options.density && !io::is_csv(document.place)) density = positive_at(document, "relative_density");
     const auto [line, points] = unloading_line(curve_of(document), options, document.place);
-    const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio) : 1.0;
-    const double factor = physics::bending_modulus(1.0, span, width, height, poisson_ratio) /
-                          physics::shear_correction(height, span, poisson_ratio) * correction;
+    const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio_of(document, options)) : 1.0;
+    const double factor = physics::slender_modulus(1.0, span, width, height) * correction;
     const double modulus = factor * line.slope, error = factor * line.slope_error;
     Json interval;
     if (std::isfinite(error)) {
