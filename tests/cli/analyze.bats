@@ -166,7 +166,9 @@ modulus_line() {
     { modulus_line 0.9 2.7e11 1e9; modulus_line 0.8 1.9e11 2e9; } >two.jsonl
     run -0 --separate-stderr "$ANALYZE" fit two.jsonl
     assert_equal "$(value '[.standard_errors.b, .covariance] | tostring')" '[null,null]'
-    assert_regex "$stderr" "as many points as parameters"
+    assert_equal "$stderr" "analyze fit: warning: knudsen: as many points as parameters, so the standard errors are unknown"
+    run -0 --separate-stderr "$ANALYZE" fit --law all two.jsonl
+    assert_equal "$stderr" "analyze fit: warning: knudsen, power, pabst, linear: as many points as parameters, so the standard errors are unknown"
     head -1 two.jsonl >one.jsonl
     run -1 "$ANALYZE" fit one.jsonl
     assert_output --partial "only 1 point"

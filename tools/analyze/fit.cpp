@@ -222,15 +222,17 @@ std::vector<std::pair<const physics::PorosityLaw*, Json>> results_of(const Optio
     Points data;
     if (!options.data.empty()) add_table_points(data, options.data);
     std::vector<std::pair<const physics::PorosityLaw*, Json>> results;
+    std::string exact;  // names of the laws that go through all points
     for (const physics::PorosityLaw* law : options.wanted) {
         const analysis::Fit found = analysis::fit_law(*law, points.porosity, points.modulus, weight);
-        if (found.degrees_of_freedom == 0 && !quiet)
-            cli::warn("analyze fit", "as many points as parameters: the standard errors are unknown");
+        if (found.degrees_of_freedom == 0) exact += (exact.empty() ? "" : ", ") + law->name;
         Json result = fit_json(*law, found, points, by_errors);
         add_band(result, *law, found, points, weight);
         if (!options.data.empty()) result["data"] = overlay_json(*law, found, data);
         results.emplace_back(law, std::move(result));
     }
+    if (!exact.empty() && !quiet)
+        cli::warn("analyze fit", exact + ": as many points as parameters, so the standard errors are unknown");
     const auto criterion = [](const auto& entry) {
         const Json& corrected = entry.second["aicc"];
         return corrected.is_null() ? std::numeric_limits<double>::infinity() : corrected.template get<double>();
