@@ -9,10 +9,10 @@ _kiln() {
     help=$("${command[@]}" --help 2>/dev/null) || return 0
     if [[ ${1##*/} == analyze && $COMP_CWORD == 1 && $current != -* ]]; then
         words=$(sed -nE '/^Subcommands/,$ s/^  ([a-z]+) {2,}.*/\1/p' <<<"$help")
-    elif [[ $previous == --* ]] && grep -qE -- "(^| |,)$previous [A-Z]+:\{" <<<"$help"; then
-        words=$(sed -nE "s/^.*$previous [A-Z]+:\{([^}]*)\}.*/\1/p" <<<"$help" | tr , ' ')
+    elif [[ $previous == --* ]] && grep -qE -- "(^| |,)$previous ([A-Z]+:)?\{" <<<"$help"; then
+        words=$(sed -nE "s/^.*$previous ([A-Z]+:)?\{([^}]*)\}.*/\2/p" <<<"$help" | tr , ' ')
     elif [[ $current == -* ]]; then
-        words=$(grep -oE -- '^ +(-[a-z],)?--[a-z-]+' <<<"$help" | grep -oE -- '--[a-z-]+')
+        words=$(grep -oE -- '^  (-[a-z],)?--[a-z-]+' <<<"$help" | grep -oE -- '--[a-z-]+')
     elif [[ ${1##*/} == sinter && $COMP_CWORD == 1 ]]; then
         words="green"
         compopt -o default 2>/dev/null

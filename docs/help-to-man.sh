@@ -14,7 +14,8 @@ page() {  # TITLE COMMAND...
     printf '.SH %s\n.nf\n%s\n.fi\n' "$1" "$(escaped <<<"$help")"
 }
 
-summary=$("$program" --help | sed -n '/^usage:/,/^$/d; /[^ ]/{p;q}')
+help=$("$program" --help)
+summary=$(sed -n '/^usage:/,/^$/d; /[^ ]/{p;q}' <<<"$help")
 printf '.TH %s 1 "" "%s" "Kiln"\n.SH NAME\n%s \\- %s\n' "${name^^}" "$version" "$name" "$(escaped <<<"$summary")"
 page DESCRIPTION "$program"
 if [ "$name" = sinter ]; then page 'SINTER GREEN' "$program" green; fi

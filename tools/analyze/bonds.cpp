@@ -9,6 +9,7 @@
 #include "tools/analyze/analyze.h"
 #include "analysis/histogram.h"
 #include "tools/analyze/report.h"
+#include "tools/common/value_options.h"
 #include "analysis/structure.h"
 
 namespace kiln::analyze {
@@ -16,19 +17,22 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Keys: relative_density, particles, count, mean_diameter (m), mean_length (m), bond_volume_fraction (share of the solid "
-    "that is in bonds), histogram of the radii {edges (m), counts}.\n"
-    "Where the bonds carry forces, as in the states that bend writes: normal_force (N), normal_stress (force over section, Pa) and "
-    "fibre_stress (with the moment as if it only bent the bond, Pa) {mean, standard_deviation, minimum, maximum}, tension "
-    "positive; "
-    "compressed_fraction (share of bonds), force_histogram.\n"
+    "Keys of a result:\n"
+    "  relative_density, particles, count, mean_diameter (m), mean_length (m)\n"
+    "  bond_volume_fraction  of the solid\n"
+    "  histogram             of the radii {edges (m), counts}\n"
+    "Where the bonds carry forces, as in the states that bend writes, also, tension positive:\n"
+    "  normal_force, normal_stress (force over section), fibre_stress (with the moment as if it only bent\n"
+    "                        the bond)  {mean, standard_deviation, minimum, maximum}, N and Pa\n"
+    "  compressed_fraction   of the bonds\n"
+    "  force_histogram       {edges (N), counts}\n\n"
     "Examples:\n"
     "  analyze bonds --table bonded.kiln\n"
     "  bondify sintered.kiln | analyze bonds --bins 50 | jq .histogram";
 
 const std::vector<Column> columns{{"relative_density", "relative density", ""}, {"particles", "particles", ""},
                                   {"count", "bonds", ""},                       {"mean_diameter", "mean diameter", "m"},
-                                  {"mean_length", "mean length", "m"},          {"bond_volume_fraction", "bond share", ""}};
+                                  {"mean_length", "mean length", "m"},          {"bond_volume_fraction", "bond fraction", ""}};
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -89,10 +93,10 @@ Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
 
 int bonds(int argc, char** argv) {
     std::size_t bins = 20;
-    CLI::App app{"Number, mean diameter and mean length of the bonds of every state, and the distribution of their radii.",
+    CLI::App app{"Counts and measures the bonds of every state.",
                  "analyze bonds"};
     app.footer(footer);
-    app.add_option("--bins", bins, "number of bins of the histogram")->check(CLI::Range(1, 1000000))->capture_default_str();
+    cli::add_number(app, "--bins", bins, {1, 1000000}, "Number of bins of the histogram");
     return report_each(app, argc, argv, columns, [&bins](io::Document document) {
         const std::string place = document.place;
         return bonds_of(io::state_from(std::move(document)), place, bins);

@@ -2,9 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <map>
 
 #include "tools/common/quantity_options.h"
+#include "tools/common/value_options.h"
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
 #include "analysis/histogram.h"
@@ -17,25 +17,33 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Keys: time (s), relative_density, measure, particles, coordination_number (contacts per particle), mean_overlap_ratio (h/2R, "
-    "or h/(r1 + r2) for unequal spheres), overlap_ratio and diameter (m) {mean, standard_deviation, minimum, maximum}, "
-    "clusters (groups that hang together, single particles included), largest_cluster_fraction, isolated (particles without a "
-    "contact), "
-    "fabric_tensor (mean of n n over the directions n of the contacts; 1/3 on the diagonal without texture), fabric_anisotropy "
-    "(largest "
-    "less smallest principal value). Contacts are overlaps, or the bonds of a state that has them (overlap 0).\n"
-    "With --bins: diameter_histogram, overlap_histogram {edges, counts}. With --correlation: pair_correlation {distance (m), g, "
-    "centres}.\n"
-    "measure says which volume the density refers to. box: of a periodic state. inner, for a state with a free axis: between the "
-    "outermost centres, one mean diameter inwards; a particle counts if its centre is inside, with half of each of its bonds. "
-    "envelope: what a ball rolling over the outside cannot enter, as grains of an envelope pycnometer (its radius: probe_radius, "
-    "m). "
-    "none: the body is too small for that, and relative_density is null.\n"
+    "Keys of a result:\n"
+    "  time (s), relative_density, particles\n"
+    "  measure                   volume that the density refers to, see below\n"
+    "  coordination_number       contacts per particle: overlaps, or bonds where there are some\n"
+    "  mean_overlap_ratio        h/2R, or h/(r1 + r2) of unequal spheres; 0 for bonds\n"
+    "  overlap_ratio, diameter   {mean, standard_deviation, minimum, maximum}, diameter in m\n"
+    "  clusters                  groups that contacts connect, single particles included\n"
+    "  largest_cluster_fraction  of the particles\n"
+    "  isolated                  particles without a contact\n"
+    "  fabric_tensor             mean of n n over the directions n of the contacts; 1/3 on the diagonal\n"
+    "                            without texture\n"
+    "  fabric_anisotropy         its largest less its smallest principal value\n"
+    "With --bins also diameter_histogram and overlap_histogram {edges, counts}, with --correlation pair_correlation {distance (m), "
+    "g, centres}.\n\n"
+    "Volumes:\n"
+    "  box       of a periodic state\n"
+    "  inner     of a state with a free axis: between the outermost centres, one mean diameter inwards;\n"
+    "            a particle counts if its centre is inside, with half of each of its bonds\n"
+    "  envelope  what a ball rolling over the outside cannot enter, as grains of an envelope pycnometer\n"
+    "            (its radius: probe_radius, m)\n"
+    "  none      the body is too small for that, and relative_density is null\n\n"
     "Examples:\n"
     "  analyze density --table sintered.kiln\n"
     "  analyze density --measure envelope free.kiln\n"
     "  analyze density --correlation sintered.kiln | jq .pair_correlation.g\n"
-    "  sinter green.kiln --every 10s | analyze density | jq -r '[.time, .relative_density] | @tsv'";
+    "  sinter --temperature 1200C --every 10s --at-time 1min green.kiln | analyze density |\n"
+    "      jq -r '[.time, .relative_density] | @tsv'";
 
 const std::vector<Column> columns{{"time", "time", "s"},
                                   {"relative_density", "relative density", ""},
@@ -55,26 +63,20 @@ struct Options {
     std::size_t correlation_bins = 100;
 
     void add_to(CLI::App& app) {
-        static const std::map<std::string, analysis::Measure> measures{{"auto", analysis::Measure::automatic},
-                                                                       {"box", analysis::Measure::box},
-                                                                       {"inner", analysis::Measure::inner},
-                                                                       {"envelope", analysis::Measure::envelope}};
-        app.add_option_function<std::string>(
-               "--measure", [this](const std::string& name) { measure = measures.at(name); },
-               "volume that the density refers to; auto: box for a periodic state, else inner")
-            ->check(CLI::IsMember(measures))
-            ->default_str("auto");
-        cli::add_quantity(app, "--probe-radius", probe, io::Dimension::length, "radius of the ball that feels the envelope",
+        cli::add_choice(app, "--measure", measure,
+                        {{"auto", analysis::Measure::automatic},
+                         {"box", analysis::Measure::box},
+                         {"inner", analysis::Measure::inner},
+                         {"envelope", analysis::Measure::envelope}},
+                        "Volume that the density refers to; auto: box for a periodic state, else inner");
+        cli::add_quantity(app, "--probe-radius", probe, io::Dimension::length, "Radius of the ball that rolls over the envelope",
                           "the mean diameter");
-        app.add_option("--bins", bins, "also histograms of diameters and overlaps, with so many bins")
-            ->check(CLI::Range(1, 1000000));
-        auto* wanted = app.add_flag("--correlation", correlation, "also the pair correlation function g(r)");
-        cli::add_quantity(app, "--range", range, io::Dimension::length, "largest distance of g(r)", "four mean diameters")
+        cli::add_number(app, "--bins", bins, {1, 1000000}, "Also histograms of diameters and overlaps, with so many bins")
+            ->default_str("");
+        auto* wanted = app.add_flag("--correlation", correlation, "Also the pair correlation function g(r)");
+        cli::add_quantity(app, "--range", range, io::Dimension::length, "Largest distance of g(r)", "four mean diameters")
             ->needs(wanted);
-        app.add_option("--shells", correlation_bins, "number of shells of g(r)")
-            ->check(CLI::Range(1, 1000000))
-            ->capture_default_str()
-            ->needs(wanted);
+        cli::add_number(app, "--shells", correlation_bins, {1, 1000000}, "Number of shells of g(r)")->needs(wanted);
         app.callback([this, &app] {
             for (const char* name : {"--probe-radius", "--range"})
                 if (app.count(name) > 0 && !((name[2] == 'p' ? probe : range) > 0.0))

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/common/bond_model.h"
+#include "tools/common/value_options.h"
 #include "io/state_io.h"
 #include "mechanics/elastic_tensor.h"
 #include "tools/analyze/analyze.h"
@@ -13,10 +14,12 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Keys: relative_density, stiffness (6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear), young_modulus (Pa) and poisson_ratio "
-    "of "
-    "its isotropic (Voigt) average, anisotropy (0 for an isotropic tensor; Ranganathan & Ostoja-Starzewski 2008), affine (the same "
-    "for particles that follow the strain: an upper bound), bond_law, iterations, residual, fragments, rattlers.\n"
+    "Keys of a result:\n"
+    "  relative_density, bond_law, iterations, residual, fragments, rattlers\n"
+    "  stiffness       6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear\n"
+    "  young_modulus (Pa), poisson_ratio  of its isotropic (Voigt) average\n"
+    "  anisotropy      0 for an isotropic tensor (Ranganathan & Ostoja-Starzewski 2008)\n"
+    "  affine          the stiffness of particles that follow the strain: an upper bound\n\n"
     "Examples:\n"
     "  bondify sintered.kiln | analyze elastic --table\n"
     "  analyze elastic --bond-law neck bonded.kiln | jq .young_modulus";
@@ -74,15 +77,13 @@ int elastic(int argc, char** argv) {
     bool table = false;
     double tolerance = 1e-8;
     mechanics::BondModel model;
-    CLI::App app{"Elastic tensor of every state: a periodic cell of bonded particles under six uniform strains.",
+    CLI::App app{"Finds the elastic tensor of every state: a periodic cell of bonded particles under six strains.",
                  "analyze elastic"};
     app.footer(footer);
     add_table(app, table);
     cli::add_bond_model(app, model);
-    app.add_option("--tolerance", tolerance, "unbalanced force over load at which a solve ends (plain number)")
-        ->check(CLI::Range(1e-14, 1e-2))
-        ->default_str("1e-8");
-    common.add_to(app);
+    cli::add_number(app, "--tolerance", tolerance, {1e-14, 1e-2}, "Unbalanced force over load at which a solve ends");
+    common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);
 
     io::Input input(common.files, cli::stop_requested);

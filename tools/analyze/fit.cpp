@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
@@ -11,6 +10,7 @@
 #include "analysis/law_fit.h"
 #include "tools/analyze/report.h"
 #include "analysis/student.h"
+#include "tools/common/value_options.h"
 
 namespace kiln::analyze {
 
@@ -18,19 +18,25 @@ namespace {
 
 constexpr const char* footer =
     "Reads dem-modulus documents (and dem-elastic ones) and tables FILE.csv, all of them for one fit; P = 1 - relative density is "
-    "the porosity. "
-    "A table has the columns relative_density (or porosity), young_modulus and, if there is one, standard_error, such as "
-    "'relative_density,young_modulus (GPa)'. Several laws give a document each, the best by AICc first.\n"
-    "Keys: law, formula, source, E0 (Pa), b or Pc, standard_errors, confidence_intervals (95 %, Student's t), covariance, points, "
-    "residuals (Pa, measured minus law), r_squared, aic, aicc, weighting, degrees_of_freedom, band {relative_density, "
-    "young_modulus, and 95 % intervals (Pa) of the law, confidence, and of one more point, prediction}, references (curves of the "
-    "literature at the same densities). "
-    "The scatter of the points about the law sets the scale of all errors; with as many points as "
-    "parameters there is none, and the errors are null.\n"
+    "the porosity. A table has the columns relative_density (or porosity), young_modulus and, if there is one, standard_error, "
+    "such as 'relative_density,young_modulus (GPa)'. Several laws give a document each, the best by AICc first.\n\n"
+    "Keys of a result:\n"
+    "  law, formula, source, weighting, degrees_of_freedom, r_squared, aic, aicc\n"
+    "  E0 (Pa), b or Pc       the parameters; with standard_errors, covariance and confidence_intervals\n"
+    "                         (95 %, Student's t)\n"
+    "  points, residuals      Pa, measured minus law\n"
+    "  band                   {relative_density, young_modulus, and 95 % intervals (Pa) of the law,\n"
+    "                         confidence, and of one more point, prediction}\n"
+    "  references             curves of the literature, for alumina, at the same densities\n"
+    "  data                   the measurements of --data, and how far they are from the law\n"
+    "The scatter of the points about the law sets the scale of all errors; with as many points as parameters there is none, and "
+    "the errors are null.\n\n";
+
+constexpr const char* examples =
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus | analyze fit --law knudsen --table\n"
-    "  analyze fit --law all --table tests.json\n"
-    "  analyze fit --law power --data measured.csv tests.json | jq .data.rms_deviation\n"
+    "  analyze fit --law all --table moduli.json\n"
+    "  analyze fit --law power --data measured.csv moduli.json | jq .data.rms_deviation\n"
     "  analyze fit --law pabst measured.csv | jq '.[\"Pc\"]'";
 
 constexpr double confidence = 0.95;
@@ -186,11 +192,15 @@ struct Options {
     void add_to(CLI::App& app);
 };
 
+/// "Laws:" and a line for each.
+std::string law_list() {
+    std::string list = "Laws:\n";
+    for (const physics::PorosityLaw& law : physics::porosity_laws())
+        list += "  " + law.name + std::string(15 - law.name.size(), ' ') + law.formula + "\n";
+    return list + "\n";
+}
+
 void Options::add_to(CLI::App& app) {
-    static const std::map<std::string, Weights> weightings{
-        {"auto", Weights::automatic}, {"errors", Weights::errors}, {"equal", Weights::equal}};
-    std::string known;
-    for (const physics::PorosityLaw& law : physics::porosity_laws()) known += law.name + ": " + law.formula + "; ";
     app.add_option_function<std::string>(
            "--law",
            [this](const std::string& names) {
@@ -200,16 +210,14 @@ void Options::add_to(CLI::App& app) {
                    throw CLI::ValidationError("--law", error.what());
                }
            },
-           known + "several separated by commas, or all")
-        ->type_name("LAW,…")
+           "Laws to fit, or all; they are listed below")
+        ->type_name("LAW,...")
         ->default_str("knudsen");
-    app.add_option_function<std::string>(
-           "--weights", [this](const std::string& text) { weights = weightings.at(text); },
-           "errors: by the standard errors of the moduli; equal: all points alike; auto: by the errors if every modulus "
-           "has one above 1e-6 of it, else equal")
-        ->check(CLI::IsMember(weightings))
-        ->default_str("auto");
-    app.add_option("--data", data, "measurements that are not fitted, to lie beside the fit: a table as above")
+    cli::add_choice(app, "--weights", weights,
+                    {{"auto", Weights::automatic}, {"errors", Weights::errors}, {"equal", Weights::equal}},
+                    "errors: by the standard errors of the moduli; equal: all points alike; auto: by the errors if every modulus "
+                    "has one above 1e-6 of it, else equal");
+    app.add_option("--data", data, "Measurements that are not fitted, to lie beside the fit: a table as below")
         ->type_name("FILE.csv");
     add_table(app, table);
 }
@@ -247,9 +255,9 @@ int fit(int argc, char** argv) {
     cli::Common common;
     Options options;
     CLI::App app{"Fits laws of Young's modulus against porosity by weighted least squares.", "analyze fit"};
-    app.footer(footer);
+    app.footer(footer + law_list() + examples);
     options.add_to(app);
-    common.add_to(app);
+    common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);
 
     const Points points = read_points(common.files);

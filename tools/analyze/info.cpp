@@ -12,8 +12,12 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "Keys: document, kind, time (s), temperature (K), relative_density, particles, bonds (counts), box (m), arrays (type and shape "
-    "as they came), materials, history (number of steps) and last_step. Documents that are not states: their keys.\n"
+    "Keys of a result:\n"
+    "  document, kind\n"
+    "  time (s), temperature (K), relative_density, particles, bonds (counts), box (m), materials\n"
+    "  arrays               type and shape as they came\n"
+    "  history, last_step   number of steps, and the last one\n"
+    "  keys                 of a document that is not a state\n\n"
     "Examples:\n"
     "  analyze info sintered.kiln\n"
     "  analyze info sintered.kiln | jq .last_step.summary";

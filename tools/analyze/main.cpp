@@ -29,21 +29,26 @@ constexpr std::array subcommands{
 
 /// `analyze`, `analyze --help`, or a subcommand that does not exist.
 int without_subcommand(int argc, char** argv) {
-    CLI::App app{"Numbers out of states and test results: one JSON document a line, SI units, or a table with --table.", "analyze"};
+    CLI::App app{
+        "Takes numbers out of states and test results.\n\nWrites one JSON document a line, in SI units, or a table with --table.",
+        "analyze"};
     std::string list = "Subcommands (analyze SUBCOMMAND --help says more):\n";
     std::vector<std::string> names;
     for (const Subcommand& each : subcommands) {
         names.emplace_back(each.name);
         list += "  " + names.back() + std::string(10 - names.back().size(), ' ') + std::string(each.purpose) + "\n";
     }
-    app.footer(list + "Example:\n  sinter green.kiln --to-density 0.67,0.79 | bondify | bend | analyze modulus | analyze fit");
-    app.set_version_flag("--version", cli::version);
+    app.footer(list + "\nExamples:\n"
+               "  analyze density --table sintered.kiln\n"
+               "  sinter --temperature 1200C --to-density 0.67,0.79 green.kiln | bondify | bend |\n"
+               "      analyze modulus | analyze fit");
+    cli::add_help(app);
     const auto refuse = [names](const std::string& given) {
         std::string known;
         for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
         return "there is no subcommand '" + given + "', only " + known;
     };
-    app.add_option("SUBCOMMAND", "what to do; must come first")->required()->type_name("")->check(refuse);
+    app.add_option("SUBCOMMAND", "What to do; must come first")->required()->type_name("")->check(refuse);
     cli::parse(app, argc, argv, cli::Common());
     return cli::wrong_usage;
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tools/common/quantity_options.h"
+#include "tools/common/value_options.h"
 #include "io/state_io.h"
 #include "physics/bending.h"
 #include "tools/analyze/analyze.h"
@@ -23,17 +24,18 @@ constexpr const char* footer =
     "deflection is that of the least squares line through the last unloading, as far as its force lies in the window; "
     "E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].\n"
     "A CSV has a heading with units, such as 'deflection (mm),force (N)' (also displacement, and punch for the travel of the "
-    "machine); --span, --width and --height are needed with it, --density if its modulus is to be fitted. With a dem-bend document "
-    "they replace its "
-    "own.\n"
-    "Keys: young_modulus (Pa), standard_error (Pa; null for two points), confidence_interval (95 %, Student's t; null likewise), "
-    "slope (N/m), relative_density, shear_correction (the bracket), compliance (m/N), window, points, and bond_law and method of "
-    "the test. The "
-    "error says "
-    "how straight the curve is, not how much packings or specimens differ.\n"
+    "machine); it requires --span, --width and --height, and --density if its modulus is to be fitted. With a dem-bend document "
+    "they replace its own.\n\n"
+    "Keys of a result:\n"
+    "  young_modulus (Pa), relative_density, slope (N/m), compliance (m/N), window, points\n"
+    "  standard_error       Pa; null for two points\n"
+    "  confidence_interval  95 %, Student's t; null for two points\n"
+    "  shear_correction     the bracket\n"
+    "  bond_law, method     of the test\n"
+    "The error says how straight the curve is, not how much packings or specimens differ.\n\n"
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus --table\n"
-    "  analyze modulus --window 0.9:0.1 tests.json | analyze fit\n"
+    "  analyze modulus --window 0.9:0.1 bent.json | analyze fit\n"
     "  analyze modulus --span 40mm --width 4mm --height 3mm --compliance 0.2um/N --density 0.79 bar7.csv";
 
 constexpr double confidence = 0.95;
@@ -71,21 +73,19 @@ void Options::add_to(CLI::App& app) {
     app.add_option_function<std::string>(
            "--window",
            [this](const std::string& text) { window = cli::parsed("--window", [&] { return analysis::parse_window(text); }); },
-           "force window of the unloading, UPPER:LOWER as shares of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
+           "Force window of the unloading, as fractions of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
+        ->type_name("UPPER:LOWER")
         ->default_str("5/6:1/3");
-    add_optional(app, "--span", span, Dimension::length, "distance between the supports");
-    add_optional(app, "--width", width, Dimension::length, "width of the bar");
-    add_optional(app, "--height", height, Dimension::length, "height of the bar, along the load");
-    add_optional(app, "--density", density, Dimension::none, "relative density of the specimen");
+    add_optional(app, "--span", span, Dimension::length, "Distance between the supports");
+    add_optional(app, "--width", width, Dimension::length, "Width of the bar");
+    add_optional(app, "--height", height, Dimension::length, "Height of the bar, along the load");
+    add_optional(app, "--density", density, Dimension::none, "Relative density of the specimen");
     add_optional(app, "--poisson-ratio", poisson_ratio, Dimension::none,
                  "Poisson's ratio in the shear correction (default 0.23 for a CSV)");
     cli::add_quantity(app, "--compliance", compliance, Dimension::compliance,
-                      "deflection of machine and fixture per force, taken off the measured deflection", "0");
-    app.add_option_function<std::string>(
-           "--shear", [this](const std::string& text) { shear = text == "timoshenko"; },
-           "timoshenko: with the bracket; none: without")
-        ->check(CLI::IsMember({"timoshenko", "none"}))
-        ->default_str("timoshenko");
+                      "Deflection of machine and fixture per force, taken off the measured deflection", "0");
+    cli::add_choice(app, "--shear", shear, {{"timoshenko", true}, {"none", false}},
+                    "timoshenko: with the bracket; none: without it, as for a slender bar");
 }
 
 /// The CSV of an experiment as the document that bend would have written.

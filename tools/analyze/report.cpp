@@ -78,7 +78,7 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
     cli::Common common;
     bool table = false;
     add_table(app, table);
-    common.add_to(app);
+    common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);
 
     Report report(common, table, columns);

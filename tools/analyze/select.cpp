@@ -15,15 +15,15 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* footer =
-    "The stream is read once; for every wanted value the nearest state (of equally near ones the first) is written, in the order "
-    "asked. With --interpolate it is a state between the first two neighbours in the stream that have the wanted value between "
-    "them; they "
-    "must hold the same particles, by id. Time, box, positions and radii are linear in between; a density is met exactly in a "
-    "periodic box.\n"
+    "The stream is read once; for every value asked for the nearest state (of equally near ones the first) is written, in the "
+    "order asked. With --interpolate it is a state between the first two neighbours in the stream that have the value between "
+    "them; they must hold the same particles, by id. Time, box, positions and radii are linear in between; a density is met "
+    "exactly in a periodic box.\n\n"
     "Examples:\n"
-    "  analyze select --density 0.67,0.79 history.kiln | bondify\n"
-    "  sinter green.kiln --every 10s | analyze select --time 200s -o chosen.kiln\n"
-    "  analyze select --interpolate --density 0.7,0.75 trajectory.kiln | bondify";
+    "  analyze select --density 0.67,0.79 trajectory.kiln | bondify -o bonded.kiln\n"
+    "  sinter --temperature 1200C --every 10s --at-time 1min green.kiln |\n"
+    "      analyze select --time 20s -o chosen.kiln\n"
+    "  analyze select --interpolate --density 0.7,0.75 trajectory.kiln | bondify | analyze bonds";
 
 constexpr double far_in_density = 0.01;  // above this difference a warning is due
 
@@ -34,16 +34,18 @@ struct Options {
     bool interpolate = false;
 
     void add_to(CLI::App& app) {
-        auto* by_density = app.add_option("--density", density, "relative densities, plain numbers separated by commas");
-        auto* by_time = cli::add_quantities(app, "--time", time, io::Dimension::time, "times, separated by commas");
-        auto* by_index = app.add_option("--index", index, "places in the stream, from 1, separated by commas");
-        by_density->delimiter(',')->allow_extra_args(false)->excludes(by_time)->excludes(by_index);
-        by_index->delimiter(',')->allow_extra_args(false)->check(CLI::PositiveNumber)->excludes(by_time);
-        app.add_flag("--interpolate", interpolate, "linear between the two states about each wanted value; an index may be 2.5");
+        auto* by_density = cli::add_quantities(app, "--density", density, io::Dimension::none, "Relative densities");
+        auto* by_time = cli::add_quantities(app, "--time", time, io::Dimension::time, "Times");
+        auto* by_index = cli::add_quantities(app, "--index", index, io::Dimension::none, "Places in the stream, from 1");
+        by_density->excludes(by_time)->excludes(by_index);
+        by_index->excludes(by_time);
+        app.add_flag("--interpolate", interpolate, "Linear between the two states about each value; an index may be 2.5");
         app.callback([this] {
-            for (const double place : index)
+            for (const double place : index) {
+                if (!(place > 0.0)) throw CLI::ValidationError("--index", Json(place).dump() + " is not greater than 0");
                 if (!interpolate && place != std::floor(place))
                     throw CLI::ValidationError("--index", Json(place).dump() + " is not a whole number");
+            }
             if (wanted().empty()) throw CLI::ValidationError("one of --density, --time, --index", "is required");
         });
     }

@@ -6,6 +6,7 @@
 
 #include "tools/common/bond_model.h"
 #include "tools/common/quantity_options.h"
+#include "tools/common/value_options.h"
 
 namespace kiln::bend {
 
@@ -16,25 +17,23 @@ namespace {
 constexpr double finest_with_friction = 1e-12;
 
 constexpr const char* description =
-    "Bends a bar of bonded particles on two supports under a punch: three rigid cylinders along y, the bar along x, the load along "
-    "-z. The bar is cut from the periodic box: bonds through the opened faces are dropped. Writes one dem-bend document a state, "
-    "with "
-    "the curve of deflection (m, lower face under the load against the bar above its supports), punch travel (m) and force (N) "
-    "over "
-    "all cycles.";
+    "Bends a bar of bonded particles on two supports under a punch.\n\n"
+    "Three rigid cylinders along y, the bar along x, the load along -z. The bar is cut from the periodic box: bonds through the "
+    "opened faces are dropped. Writes one dem-bend document a state, with the curve of deflection (m, lower face under the load "
+    "against the bar above its supports), travel of the punch (m) and force (N) over all cycles.";
 
 constexpr const char* footer =
-    "Static: bonds are springs; particles touch the cylinders, and each other where a gap between them closes, by Hertz's law, and "
-    "part\n"
-    "freely.\n"
+    "Static: bonds are springs; particles touch the cylinders, and each other where a gap between them closes, by Hertz's law, "
+    "and part freely.\n"
     "Dynamic: the same by leapfrog steps. Of the work of the punch it says what was stored and what was dissipated.\n"
     "Both: with --friction contacts are also tangential springs (Mindlin) that slip (Coulomb). The bar then stores less than the "
-    "punch\n"
-    "works, unloading does not retrace loading, and the supports thrust it together (horizontal_reaction, N).\n"
+    "work of the punch, unloading does not retrace loading, and the supports press the bar together (horizontal_reaction, N).\n\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
-    "  bend --span 8um --punch-radius 2um --max-force 60uN --states bent.kiln bonded.kiln -o bend.json\n"
-    "  for law in series neck centre; do bend --bond-law $law bonded.kiln; done | analyze modulus --table";
+    "  bend --max-deflection 0.5nm --states bent.kiln -o bent.json bonded.kiln\n"
+    "  bend --tensile-strength 500MPa bonded.kiln | jq .strength.bending_strength\n"
+    "  for law in series neck centre; do bend --bond-law $law bonded.kiln; done |\n"
+    "      analyze modulus --table";
 
 }  // namespace
 
@@ -42,37 +41,26 @@ void Options::add_to(CLI::App& app) {
     using io::Dimension;
     app.description(description);
     app.footer(footer);
-    cli::add_quantity(app, "--span", span, Dimension::length, "distance between the supports", "0.8 of the bar's length");
-    cli::add_quantity(app, "--punch-radius", punch_radius, Dimension::length, "radius of the three cylinders",
+    cli::add_quantity(app, "--span", span, Dimension::length, "Distance between the supports", "0.8 of the bar's length");
+    cli::add_quantity(app, "--punch-radius", punch_radius, Dimension::length, "Radius of the three cylinders",
                       "0.75 of the bar's height");
     auto* deflection = cli::add_quantity(app, "--max-deflection", max_deflection, Dimension::length,
-                                         "deflection at which unloading begins", "0.001 of the bar's height");
-    cli::add_quantity(app, "--max-force", max_force, Dimension::force, "force at which unloading begins, instead")
-        ->excludes(deflection);
-    app.add_option("--cycles", cycles, "times that the bar is loaded and unloaded")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    app.add_option("--points", points, "points of the curve in each branch, at equal steps of force")
-        ->check(CLI::Range(3, 1000))
-        ->capture_default_str();
-    app.add_option(
-           "--friction", friction,
-           "coefficient of friction of all contacts (plain number): the cylinders are fixed against turning, and the bar slides "
-           "on them where the tangential force reaches this share of the normal one; 0: rollers")
-        ->check(CLI::Range(0.0, 10.0))
-        ->capture_default_str();
+                                         "Deflection at which unloading begins", "0.001 of the bar's height");
+    cli::add_quantity(app, "--max-force", max_force, Dimension::force, "Force at which unloading begins")->excludes(deflection);
+    cli::add_number(app, "--cycles", cycles, {1, 1000}, "How often the bar is loaded and unloaded");
+    cli::add_number(app, "--points", points, {3, 1000}, "Points of the curve in each branch, at equal steps of force");
+    cli::add_number(app, "--friction", friction, {0.0, 10.0},
+                    "Coefficient of friction of all contacts: the cylinders are fixed against turning, and the bar slides on them "
+                    "where the tangential force reaches this fraction of the normal one; 0: rollers");
     cli::add_bond_model(app, model);
-    app.add_option("--tolerance", tolerance,
-                   "unbalanced force over contact force at which an equilibrium is reached (plain number)")
-        ->check(CLI::Range(1e-14, 1e-2))
-        ->default_str("1e-6");
-    app.add_option("--states", states, "also write the bar bent by the greatest force, with the forces in its bonds, to this file")
+    cli::add_number(app, "--tolerance", tolerance, {1e-14, 1e-2},
+                    "Unbalanced force over contact force at which an equilibrium is reached");
+    app.add_option("--states", states, "Also write the bar bent by the maximum force, with the forces in its bonds, to this file")
         ->type_name("FILE");
     add_dynamic(app);
     add_strength(app);
     app.callback([this, &app] { check(app); });
 }
-
 void Options::check(const CLI::App& app) const {
     const std::pair<const char*, double> quantities[] = {{"--span", span},
                                                          {"--punch-radius", punch_radius},
@@ -103,31 +91,22 @@ void Options::check(const CLI::App& app) const {
 
 void Options::add_strength(CLI::App& app) {
     cli::add_quantity(app, "--tensile-strength", tensile_strength, io::Dimension::pressure,
-                      "bonds break where tension and bending together reach this stress; the bar is loaded until it fails", "none");
-    cli::add_quantity(app, "--shear-strength", shear_strength, io::Dimension::pressure, "the same for shear and torsion together",
+                      "Bonds break where tension and bending together reach this stress; the bar is loaded until it fails", "none");
+    cli::add_quantity(app, "--shear-strength", shear_strength, io::Dimension::pressure, "The same for shear and torsion together",
                       "none");
-    app.add_option("--until", until,
-                   "the test to failure ends where the force has fallen to this share of its greatest (plain number)")
-        ->check(CLI::Range(0.01, 0.999))
-        ->capture_default_str();
+    cli::add_number(app, "--until", until, {0.01, 0.999},
+                    "Fraction of its maximum to which the force has fallen when a test to failure ends");
 }
 
 void Options::add_dynamic(CLI::App& app) {
-    app.add_option_function<std::string>(
-           "--method", [this](const std::string& text) { method = text == "dynamic" ? Method::motion : Method::equilibria; },
-           "static, a sequence of equilibria; dynamic, the motion of all particles in time, for reference: thousands of times the "
-           "work")
-        ->check(CLI::IsMember({"static", "dynamic"}))
-        ->default_str("static");
-    cli::add_quantity(app, "--punch-velocity", punch_velocity, io::Dimension::velocity, "speed of the punch, dynamic",
-                      "the greatest deflection in 20 of the bar's own periods");
-    app.add_option("--damping", damping, "share of the unbalanced force that brakes each particle, dynamic (plain number below 1)")
-        ->check(CLI::Range(0.0, 0.99))
-        ->capture_default_str();
-    app.add_option("--mass-scaling", mass_scaling,
-                   "factor on the mass of the particles, dynamic (plain number); time steps and periods grow with its square root")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
+    cli::add_choice(app, "--method", method, {{"static", Method::equilibria}, {"dynamic", Method::motion}},
+                    "static: a sequence of equilibria; dynamic: the motion of all particles in time, as a reference, which takes "
+                    "hundreds of times as long");
+    cli::add_quantity(app, "--punch-velocity", punch_velocity, io::Dimension::velocity, "Speed of the punch; dynamic",
+                      "such that the maximum deflection is reached in 20 of the bar's own periods");
+    cli::add_number(app, "--damping", damping, {0.0, 0.99}, "Fraction of the unbalanced force that brakes each particle; dynamic");
+    cli::add_number(app, "--mass-scaling", mass_scaling, {cli::above_zero},
+                    "Factor on the mass of the particles; time steps and periods grow with its square root; dynamic");
 }
 
 }  // namespace kiln::bend

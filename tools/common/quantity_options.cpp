@@ -32,7 +32,7 @@ CLI::Option* add_quantities(CLI::App& app, const std::string& name, std::vector<
             }
         },
         help + (known.empty() ? "" : " [" + known + "]"));
-    option->type_name(known.empty() ? "NUMBER,…" : "QUANTITY,…");
+    option->type_name(known.empty() ? "NUMBER,..." : "QUANTITY,...");
     return option;
 }
 

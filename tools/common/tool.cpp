@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -14,6 +15,8 @@
 #include <set>
 
 #include "io/files.h"
+#include "tools/common/help_format.h"
+#include "tools/common/value_options.h"
 
 namespace kiln::cli {
 
@@ -33,6 +36,9 @@ void watch_signals() {
     if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // under nohup it stays ignored
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // these come back as errors of write
 }
+
+/// The group of options that every program has; --help prints it last.
+constexpr const char* common_group = "Common options";
 
 /// --help and --version: everything is said already.
 struct Finished {};
@@ -54,23 +60,31 @@ int status_after_signal(int usual) { return signal_seen == 0 ? usual : 128 + sig
 
 }  // namespace
 
-void Common::add_to(CLI::App& app, bool reads) {
-    app.set_help_flag("-h,--help", "Print this help and exit");
-    app.set_version_flag("--version", version);
-    app.set_config("--config", "", "Read options from a TOML file, such as: temperature = \"1200C\"")->type_name("FILE");
-    app.allow_config_extras(false);
-    app.get_formatter()->column_width(36);
-    if (reads) app.add_option("files", files, "Input streams; - or nothing is standard input")->type_name("FILE");
-    app.add_option("-o,--output", output, "Output file, written whole or not at all; - is standard output")
+void add_help(CLI::App& app) {
+    app.formatter(std::make_shared<HelpFormat>());
+    app.set_help_flag("-h,--help", "Print this help and exit")->group(common_group);
+    app.set_version_flag("--version", version, "Print the version and exit")->group(common_group);
+}
+
+void Common::add_to(CLI::App& app, bool reads, bool writes_states) {
+    if (reads) app.add_option("files", files, "Streams to read; - or nothing is standard input")->type_name("FILE");
+    app.add_option("-o,--output", output, "File to write, whole or not at all; - is standard output")
         ->type_name("FILE")
-        ->default_str("-");
-    app.add_flag("--text", text, "Write text documents (JSON lines) instead of binary ones");
-    app.add_flag("-q,--quiet", quiet, "No progress and no warnings on standard error");
-    app.add_flag("-v,--verbose", verbose, "Say more on standard error; a JSON line a step when that is not a terminal");
-    app.add_option("--threads", threads, "Number of threads; the result does not depend on it")
-        ->check(CLI::Range(1, 1024))
+        ->default_str("-")
+        ->group(common_group);
+    if (writes_states)
+        app.add_flag("--text", text, "Write text documents (JSON lines) instead of binary ones")->group(common_group);
+    app.add_flag("-q,--quiet", quiet, "No progress and no warnings on standard error")->group(common_group);
+    app.add_flag("-v,--verbose", verbose, "Say more on standard error; a JSON line a step if that is not a terminal")
+        ->group(common_group);
+    add_number(app, "--threads", threads, {1, 1024}, "Number of threads; the result does not depend on it")
         ->default_str("all cores")
-        ->type_name("N");
+        ->group(common_group);
+    app.set_config("--config", "", "Read options from a TOML file, such as: temperature = \"1200C\"")
+        ->type_name("FILE")
+        ->group(common_group);
+    app.allow_config_extras(false);
+    add_help(app);
 }
 
 void keep_freed_memory() {
@@ -87,10 +101,8 @@ int run(const std::string& tool, int argc, char** argv, const std::function<int(
         return status == done || status == interrupted ? status_after_signal(status) : status;
     } catch (const Finished&) {
         if (std::cout.flush()) return done;
+        if (errno == EPIPE) return closed_pipe;
         say("standard output cannot be written");
-        return failed;
-    } catch (const CLI::FileError& error) {
-        say(error.what());
         return failed;
     } catch (const CLI::ParseError& error) {
         say(std::string(error.what()) + "; see " + tool + " --help");
@@ -130,6 +142,8 @@ void parse(CLI::App& app, int argc, char** argv, const Common& common) {
     } catch (const CLI::CallForVersion&) {
         std::cout << app.get_name() << " (Kiln) " << version << "\n";
         throw Finished();
+    } catch (const CLI::FileError&) {  // the only file that CLI11 reads itself
+        throw Error("--config: " + app.get_config_ptr()->as<std::string>() + " cannot be read");
     }
     if (common.threads > 0) omp_set_num_threads(common.threads);
 }

@@ -17,6 +17,9 @@ inline constexpr const char* version = "0.1.0";
 
 enum Status : int { done = 0, failed = 1, wrong_usage = 2, not_converged = 3, interrupted = 130, closed_pipe = 141 };
 
+/// Adds --help, laid out as in all programs, and --version to the app.
+void add_help(CLI::App& app);
+
 /// Options that every tool has. files and output are for tools that read or write streams.
 struct Common {
     std::vector<std::string> files;
@@ -26,8 +29,9 @@ struct Common {
     bool verbose = false;
     int threads = 0;  // 0: as many as the machine has
 
-    /// Adds FILE..., -o, --text, -q, -v, --threads, --config, --version to the app. `reads`: takes input files.
-    void add_to(CLI::App& app, bool reads = true);
+    /// Adds FILE..., -o, --text, -q, -v, --threads, --config, --help, --version to the app, behind what it has already: a
+    /// program's own options come first in --help. `reads`: takes input files; `writes_states`: what --text has an effect on.
+    void add_to(CLI::App& app, bool reads = true, bool writes_states = true);
 };
 
 /// Lets the program keep the memory that it frees. A page that comes fresh from the system costs more time than reading 4 KB into

@@ -67,10 +67,7 @@ Json summary_of(const PackingOptions& options, const State& state) {
 }  // namespace
 
 int green(int argc, char** argv) {
-    CLI::App app(
-        "Makes a green body: random spheres in a periodic box at a relative density.\n\n"
-        "  sinter green -n 99000 --diameter 100nm --density 0.43 | sinter --to-density 0.67 -o sintered.kiln",
-        "sinter green");
+    CLI::App app("", "sinter green");
     GreenOptions options;
     options.add_to(app);
     cli::parse(app, argc, argv, options.common);

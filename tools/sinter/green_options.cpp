@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tools/common/quantity_options.h"
+#include "tools/common/value_options.h"
 
 namespace kiln::sinter {
 
@@ -16,14 +17,17 @@ namespace {
 // The densest packing of equal spheres fills pi/sqrt(18) = 0.7405.
 constexpr double densest_loose = 0.74;
 
-[[noreturn]] void refuse(const std::string& sentence) { throw CLI::ValidationError(sentence); }
+constexpr const char* description =
+    "Makes a green body: random spheres in a periodic box at a relative density.";
 
-Method parse_method(const std::string& text) {
-    if (text == "loose") return Method::loose;
-    if (text == "affine") return Method::affine;
-    if (text == "soft") return Method::soft;
-    refuse("--method: '" + text + "' is none of loose, affine, soft");
-}
+constexpr const char* footer =
+    "Examples:\n"
+    "  sinter green -n 3000 --density 0.43 --aspect 4:1:1 --seed 1 -o green.kiln\n"
+    "  sinter green -n 99000 | sinter --temperature 1200C --to-density 0.67 -o sintered.kiln\n"
+    "  sinter green -n 6000 --distribution lognormal:100nm:1.4:50nm:200nm --compact-to 0.55 |\n"
+    "      analyze density --bins 10 | jq .diameter_histogram";
+
+[[noreturn]] void refuse(const std::string& sentence) { throw CLI::ValidationError(sentence); }
 
 std::array<double, 3> parse_aspect(const std::string& text) {
     std::array<double, 3> aspect;
@@ -43,39 +47,35 @@ std::array<double, 3> parse_aspect(const std::string& text) {
 
 void GreenOptions::add_to(CLI::App& app) {
     using cli::add_quantity, io::Dimension;
-    common.add_to(app, false);
-    app.add_option("-n,--particles", packing.particles, "Number of particles; with file:LIST as many as it has lines")
-        ->capture_default_str()
-        ->type_name("N");
+    app.description(description);
+    app.footer(footer);
+    cli::add_number(app, "-n,--particles", packing.particles, {1, std::numeric_limits<std::int32_t>::max()},
+                    "Number of particles; with file:LIST as many as it has lines");
     add_quantity(app, "--diameter", diameter, Dimension::length, "Diameter of monosize particles", "100nm");
     app.add_option(
            "--distribution", distribution,
-           "Diameters by number: monosize; lognormal:MEDIAN:DEVIATION[:MIN:MAX] with the geometric standard deviation, as in "
-           "lognormal:100nm:1.4:50nm:200nm; bimodal:D1:D2:FRACTION with the number fraction of D1; file:LIST, one diameter with "
-           "its unit a line, taken in turn")
+           "Diameters by number. monosize: all alike; lognormal:MEDIAN:DEVIATION[:MIN:MAX] with the geometric standard deviation, "
+           "as in lognormal:100nm:1.4:50nm:200nm; bimodal:D1:D2:FRACTION with the number fraction of D1; file:LIST, one diameter "
+           "with its unit a line, taken in turn")
         ->capture_default_str()
         ->type_name("SIZES");
-    add_quantity(app, "--density", packing.density, Dimension::none, "Relative density: volume of the spheres over that of the box",
-                 "0.43");
-    app.add_option_function<std::string>(
-           "--method", [this](const std::string& text) { packing.method = parse_method(text); },
-           "loose: random spheres pushed apart until none overlap, then shrunk together by --swell; affine: "
-           "the same, compacted to --compact-to; soft: pushed apart down to --mean-overlap")
-        ->default_str("loose")
-        ->type_name("METHOD");
+    cli::add_number(app, "--density", packing.density, {}, "Relative density: volume of the spheres over that of the box");
+    cli::add_choice(app, "--method", packing.method,
+                    {{"loose", Method::loose}, {"affine", Method::affine}, {"soft", Method::soft}},
+                    "loose: random spheres pushed apart until none overlap, then brought together by --swell; affine: the same, "
+                    "compacted to --compact-to; soft: pushed apart down to --mean-overlap");
     app.add_option_function<std::string>(
            "--compact-to",
-           [this](const std::string& text) {
-               packing.compact_to = cli::parsed("--compact-to", [&] { return io::parse_quantity(text, Dimension::none); });
-           },
-           "Relative density to shrink all distances between centres to in the end, radii unchanged")
+           [this](const std::string& text) { packing.compact_to = cli::number_from<double>("--compact-to", text, {}); },
+           "Relative density to which all distances between centres are scaled down in the end, radii unchanged; chooses --method "
+           "affine where no method is given")
         ->type_name("NUMBER");
-    add_quantity(app, "--swell", packing.swell, Dimension::none,
-                 "Share of distances by which touching spheres are pressed into contact", "0.01");
-    add_quantity(app, "--damping", packing.damping, Dimension::none,
-                 "Drag on spheres pushed apart, over the critical damping of a pair; more of it leaves more contacts", "0.295");
-    add_quantity(app, "--mean-overlap", packing.mean_overlap, Dimension::none,
-                 "Mean overlap over diameter at which method soft ends", "0.02");
+    cli::add_number(app, "--swell", packing.swell, {0.0, 0.2},
+                    "Fraction of their distance by which touching spheres are pressed into contact");
+    cli::add_number(app, "--damping", packing.damping, {0.1, 10.0},
+                    "Drag on spheres pushed apart, over the critical damping of a pair; more of it leaves more contacts");
+    cli::add_number(app, "--mean-overlap", packing.mean_overlap, {cli::above_zero, 0.5},
+                    "Mean overlap over diameter at which method soft ends");
     app.add_option_function<std::string>(
            "--aspect", [this](const std::string& text) { packing.aspect = parse_aspect(text); },
            "Edges of the periodic box against each other, such as 4:1:1")
@@ -84,7 +84,8 @@ void GreenOptions::add_to(CLI::App& app) {
     app.add_option("--material", material, "Built-in material, or a file NAME.json that holds one")
         ->capture_default_str()
         ->type_name("NAME");
-    app.add_option("--seed", packing.seed, "Seed of the random numbers")->capture_default_str()->type_name("N");
+    cli::add_number(app, "--seed", packing.seed, {}, "Seed of the random numbers");
+    common.add_to(app, false);
 }
 
 void GreenOptions::complete(const CLI::App& app) {
@@ -95,9 +96,6 @@ void GreenOptions::complete(const CLI::App& app) {
     if (packing.method == Method::affine && !packing.compact_to) refuse("--method affine needs --compact-to");
     if (packing.compact_to && !(*packing.compact_to >= packing.density && *packing.compact_to < 1.0))
         refuse("--compact-to: the relative density is not between --density and 1");
-    if (!(packing.swell >= 0.0 && packing.swell <= 0.2)) refuse("--swell: the share is not between 0 and 0.2");
-    if (!(packing.damping >= 0.1 && packing.damping <= 10.0)) refuse("--damping: the ratio is not between 0.1 and 10");
-    if (!(packing.mean_overlap > 0.0 && packing.mean_overlap < 0.5)) refuse("--mean-overlap: the ratio is not between 0 and 0.5");
     if (soft ? app.count("--swell") > 0 : app.count("--mean-overlap") > 0)
         refuse(soft ? "--swell does not go with --method soft" : "--mean-overlap goes with --method soft only");
     if (!(diameter > 0.0)) refuse("--diameter: the diameter is not above zero");

@@ -13,11 +13,11 @@ namespace {
 using namespace kiln;
 
 int sinter_states(int argc, char** argv) {
-    CLI::App app("Sinter packings of powder particles by the discrete element method.", "sinter");
+    CLI::App app("", "sinter");
     cli::Common common;
     sinter::Options options;
-    common.add_to(app);
     options.add_to(app);
+    common.add_to(app);
     cli::parse(app, argc, argv, common);
     options.check(common.output);
     cli::check_outputs({common.output, options.history, options.checkpoint});

@@ -6,23 +6,30 @@
 
 #include "tools/common/quantity_options.h"
 #include "io/schedule_text.h"
+#include "tools/common/value_options.h"
 
 namespace kiln::sinter {
 
 namespace {
 
-using cli::add_quantities, cli::add_quantity, io::Dimension;
+using cli::add_number, cli::add_quantities, cli::add_quantity, io::Dimension;
+
+constexpr const char* description =
+    "Sinters packings of powder particles by the discrete element method.\n\n"
+    "Reads states and writes a state at each density or time asked for; with --schedule alone, the state at its end. "
+    "`sinter green --help` describes the command that makes green bodies.";
 
 constexpr const char* footer =
-    "Reads states, sinters each, and writes a state at every wanted density or time; with --schedule alone, the state at its end.\n"
-    "`sinter green --help` describes the command that makes green bodies.\n\n"
+    "Times of --at-time are those of the state's own clock, which `analyze info` shows; --schedule and --every begin where that "
+    "clock stands.\n\n"
     "Examples:\n"
-    "  sinter green -n 6000 --density 0.43 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.kiln\n"
-    "  sinter --schedule \"25C 10K/min 1200C 1h 10K/min 25C\" --history history.jsonl -o fired.kiln green.kiln\n"
-    "  sinter --temperature 1200C --at-time 10min,1h green.kiln | analyze density --table\n"
+    "  sinter green -n 6000 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.kiln\n"
+    "  sinter --schedule \"25C 10K/min 1150C 10min 20K/min 25C\" -o fired.kiln green.kiln\n"
+    "  sinter --temperature 1200C --at-time 1min,5min green.kiln | analyze density --table\n"
     "  sinter --temperature 1200C --fix xy --report viscosity --to-density 0.7 -o film.kiln green.kiln\n"
-    "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 5min -o forged.kiln green.kiln\n"
-    "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln green.kiln";
+    "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 1min -o forged.kiln green.kiln\n"
+    "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln \\\n"
+    "      --history history.jsonl green.kiln";
 
 constexpr double solver_share = 10.0;  // tolerance of a step's motion over that of the run: the density feels its square
 
@@ -40,31 +47,34 @@ void Options::add_to(CLI::App& app) {
     add_boundaries(app);
     add_method(app);
     app.add_option("--history", history, "File for the density history, one JSON line a step")->type_name("FILE");
-    app.add_option("--checkpoint", checkpoint, "File that a broken-off run can be taken up from; wants -o FILE")->type_name("FILE");
+    app.add_option("--checkpoint", checkpoint, "File from which an interrupted run can be resumed; requires -o FILE")
+        ->type_name("FILE");
     add_quantity(app, "--checkpoint-every", checkpoint_every, Dimension::time, "Wall time between checkpoints", "60s");
-    app.add_flag("--resume", resume, "Go on from --checkpoint FILE if it is there, else begin with the input");
+    app.add_flag("--resume", resume, "Resume the run of --checkpoint FILE if the file is there, else begin with the input");
+    app.description(description);
     app.footer(footer);
 }
 
 void Options::add_programme(CLI::App& app) {
-    add_quantities(app, "--to-density", densities, Dimension::none, "Relative densities to write a state at, such as 0.67,0.71");
-    add_quantities(app, "--at-time", times, Dimension::time, "Times to write a state at");
+    add_quantities(app, "--to-density", densities, Dimension::none,
+                   "Relative densities at which a state is written, such as 0.67,0.71");
+    add_quantities(app, "--at-time", times, Dimension::time, "Times at which a state is written, on the clock of the state");
     add_quantity(app, "--every", every, Dimension::time,
-                 "Also write a state after each such span of time, until the last wanted one");
-    auto* hold = add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of the hold");
+                 "Also write a state after each such interval from the state's time on, until the last density or time");
+    auto* hold = add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of a hold without end");
     app.add_option(
            "--schedule", schedule,
            "Temperatures, heating rates and hold times, such as \"25C 10K/min 1200C 1h 10K/min 25C\", from the state's time on")
         ->type_name("WORDS")
         ->excludes(hold);
     app.add_option("--report", report,
-                   "viscosity: with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
+                   "viscosity: write with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
         ->check(CLI::IsMember({"viscosity"}))
         ->type_name("WHAT");
 }
 
 void Options::add_boundaries(CLI::App& app) {
-    app.add_option("--boundary", boundary, "periodic, or free: a body without faces that are periodic")
+    app.add_option("--boundary", boundary, "periodic: along all axes; free: a body without periodic faces")
         ->check(CLI::IsMember({"periodic", "free"}))
         ->default_str("as the state says")
         ->type_name("KIND");
@@ -76,41 +86,38 @@ void Options::add_boundaries(CLI::App& app) {
 
 void Options::add_method(CLI::App& app) {
     app.add_option("--method", method,
-                   "implicit: overdamped, second order in time; explicit: with inertia, mass-scaled, as in the paper")
+                   "implicit: without inertia, second order in time; explicit: with inertia, scaled, as in the paper")
         ->check(CLI::IsMember({"implicit", "explicit"}))
         ->capture_default_str()
         ->type_name("METHOD");
-    add_quantity(app, "--mass-scaling", mass_scaling, Dimension::none, "Mass of the explicit method over the true one", "1e20");
-    add_quantity(app, "--tolerance", tolerance, Dimension::none, "Relative error of the density over the run to aim at", "3e-4");
-    app.add_option("--order", order, "Order in time of the implicit step; 1 is for comparison")
-        ->check(CLI::Range(1, 2))
-        ->capture_default_str();
-    add_quantity(app, "--alpha", constants.alpha, Dimension::none, "Contact constant of the sintering force", "4.5");
-    add_quantity(app, "--beta", constants.beta, Dimension::none, "Contact constant of the viscosities", "4");
-    add_quantity(app, "--eta", constants.eta, Dimension::none, "Contact constant of tangential friction", "0.01");
+    add_number(app, "--mass-scaling", mass_scaling, {cli::above_zero}, "Mass over the true one; explicit");
+    add_number(app, "--tolerance", tolerance, {}, "Relative error of the density over the run to aim at");
+    add_number(app, "--order", order, {1, 2}, "Order in time of the implicit step; 1 is for comparison");
+    add_number(app, "--alpha", constants.alpha, {0.0}, "Constant of the sintering force (alpha/beta) pi 2 R* gamma of a contact");
+    add_number(app, "--beta", constants.beta, {cli::above_zero},
+               "Constant of that force and of the viscosity pi a^4/(2 beta Delta)");
+    add_number(app, "--eta", constants.eta, {0.0},
+               "Constant of the tangential viscosity eta pi a^2 (2 R*)^2/(2 beta Delta); a^2 = 4 R* h");
 }
 
 void Options::check(const std::string& output) const {
-    if (schedule.empty() && temperature == 0.0) throw CLI::ValidationError("one of --temperature and --schedule is wanted");
+    if (schedule.empty() && temperature == 0.0) throw CLI::ValidationError("one of --temperature and --schedule is required");
     if (densities.empty() && times.empty() && schedule.empty())
-        throw CLI::ValidationError("one of --to-density, --at-time and --schedule is wanted");
+        throw CLI::ValidationError("one of --to-density, --at-time and --schedule is required");
     check_list(densities, 0.0, 1.0, "--to-density");
     for (const double time : times)
         if (!(time >= 0.0)) throw CLI::ValidationError("--at-time: a time is not negative");
     if (!(every >= 0.0)) throw CLI::ValidationError("--every: a span of time is not negative");
     check_list({tolerance}, 0.0, 1.0, "--tolerance");
-    if (!(mass_scaling > 0.0)) throw CLI::ValidationError("--mass-scaling is positive");
-    if (!(constants.alpha >= 0.0 && constants.beta > 0.0 && constants.eta >= 0.0))
-        throw CLI::ValidationError("--alpha and --eta are not negative and --beta is positive");
     if (fixed.find_first_not_of("xyz") != std::string::npos)
         throw CLI::ValidationError("--fix: '" + fixed + "' is not made of the axes x, y and z");
     if (!(pressure.empty() || pressure.size() == 1 || pressure.size() == 3))
-        throw CLI::ValidationError("--pressure: one value or three are wanted, for x,y,z");
+        throw CLI::ValidationError("--pressure: one value or three are required, for x,y,z");
     if (boundary == "free" && (!fixed.empty() || !pressure.empty()))
         throw CLI::ValidationError(
             "--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
-    if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint wants an output file: -o FILE");
-    if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume wants --checkpoint FILE");
+    if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint requires an output file: -o FILE");
+    if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume requires --checkpoint FILE");
     if (!schedule.empty()) cli::parsed("--schedule", [this] { return io::parse_schedule(schedule); });
 }
 

@@ -14,18 +14,19 @@ LENGTH = {"m": 0, "mm": -3, "um": -6, "nm": -9}  # powers of ten
 TIME = {"s": 0, "ms": -3, "us": -6, "ns": -9}
 
 EXAMPLES = """formats, by the end of the name or --from and --to:
-  dem     .kiln .dem; text with .jsonl   states, everything
-  vtu     .vtu, or .pvd for a series     spheres as vertices, bonds as lines, all arrays, for ParaView (written)
-  data    .data .lmp                     LAMMPS data file, atom style sphere or bpm/sphere, bonds
-  dump    .dump .lammpstrj               LAMMPS text dump; bonds as dump local beside it, NAME.bonds.dump
-  xyz     .xyz .extxyz                   extended XYZ; without bonds
-  csv     .csv                           table of particles, box in remarks; bonds in NAME.bonds.csv
-  musen   .txt                           text export of MUSEN (read)
+  dem    .kiln .dem; text with .jsonl  states, everything
+  vtu    .vtu, or .pvd for a series    for ParaView (written): spheres as vertices, bonds as lines
+  data   .data .lmp                    LAMMPS data file, atom style sphere or bpm/sphere, bonds
+  dump   .dump .lammpstrj              LAMMPS text dump; bonds as dump local in NAME.bonds.dump
+  xyz    .xyz .extxyz                  extended XYZ; without bonds
+  csv    .csv                          table of particles, box in remarks; bonds in NAME.bonds.csv
+  musen  .txt                          text export of MUSEN (read)
 Several states become NAME-0001.data and so on where the format holds one state.
 
 examples:
   dem-convert sintered.kiln sintered.pvd
-  dem-convert bonded.kiln bonded.data && lmp -in relax.in && dem-convert --like bonded.kiln relaxed.data - | bend
+  dem-convert bonded.kiln bonded.data && lmp -in relax.in &&
+      dem-convert --like bonded.kiln relaxed.data - | bend
   dem-convert --time-step 10ns --radius 50nm packing.dump - | bondify | analyze bonds
 """
 
