@@ -94,20 +94,19 @@ class Strokes {
 
 mechanics::ExplicitMotion Strokes::make_motion() {
     const Specimen& specimen = result_.specimen;
-    const double stiffness = estimated_stiffness(specimen, result_.fixture);
+    const double stiffness = estimated_stiffness(specimen, result_.fixture), force = stiffness * deflection_;
     const std::vector<double> mass = masses(specimen, options_.mass_scaling);
     double total = 0.0;
     for (const double each : mass) total += each;
     period_ = beam_period(stiffness, total * result_.fixture.span / specimen.size[0]);
     velocity_ = options_.punch_velocity > 0.0 ? options_.punch_velocity : deflection_ / (default_periods * period_);
     const mechanics::Tooling tooling = find_contacts(specimen, result_.fixture);
-    mechanics::ContactProblem rigid(specimen.body.network, nullptr, tooling.contacts);
-    seat_ = rigid.seat(seating_force * stiffness * deflection_);
+    const mechanics::Seat seat = mechanics::seat_rigid(specimen.body.network, tooling.contacts, seating_force * force);
+    seat_ = seat.punch;
     mechanics::ExplicitMotion motion(specimen.body.network, mechanics::elastic_spheres(specimen.state, specimen.body), mass,
-                                     tooling, {options_.damping, options_.friction, stiffness * deflection_});
-    const mechanics::Vector start = rigid.displacement();
-    motion.place(start, seat_);
-    zero_ = gauge_.read(start);
+                                     tooling, {options_.damping, options_.friction, force});
+    motion.place(seat.displacement, seat_);
+    zero_ = gauge_.read(seat.displacement);
     result_.dynamic.time_step = motion.time_step();
     result_.dynamic.velocity = velocity_;
     return motion;

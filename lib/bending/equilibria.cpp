@@ -48,11 +48,10 @@ Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const O
     : network_(specimen.body.network),
       tooling_(find_contacts(specimen, fixture)),
       solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
-      problem_(specimen.body.network, &solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction),
+      problem_(specimen.body.network, solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction,
+               seating_share * expected_force(specimen, fixture, options)),
       gauge_(specimen, fixture),
       tolerance_(options.tolerance) {}
-
-void Equilibria::seat(double greatest_force) { seat_ = problem_.seat(seating_share * greatest_force); }
 
 double Equilibria::trial_tolerance() const { return std::max(loose_tolerance, tolerance_); }
 
@@ -71,7 +70,7 @@ Level Equilibria::level_of(mechanics::Equilibrium equilibrium, Result& result) {
     last_ = std::move(equilibrium);
     result.iterations += last_.iterations;
     result.tilt = std::max(result.tilt, mean_turn(network_, last_.displacement));
-    return {{gauge_.read(last_.displacement), last_.punch - seat_, last_.punch_force},
+    return {{gauge_.read(last_.displacement), last_.punch - problem_.seat(), last_.punch_force},
             last_.punch_compliance,
             last_.bond_energy + last_.contact_energy,
             last_.friction_loss};

@@ -23,15 +23,13 @@ struct WorkOfStep {
 /// over travel, is uncertain; so is all that a force which only grows or only falls may have done, where a cubic does neither.
 WorkOfStep work_of_step(const Level& from, const Level& to);
 
-/// Equilibria of one test; their iterations, residuals and convergence go to its result.
+/// Equilibria of one test, its travel counted from where the punch meets the bar; their iterations, residuals and convergence go to
+/// its result.
 class Equilibria {
    public:
     Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options);
     Equilibria(const Equilibria&) = delete;  // the contact problem refers to the solver
     Equilibria& operator=(const Equilibria&) = delete;
-
-    /// The bar seated by next to nothing of the greatest force (N): the zero of the punch's travel.
-    void seat(double greatest_force);
 
     /// An equilibrium on the way to one that counts: as exact as searches need.
     Level trial(double force, Result& result);
@@ -66,7 +64,6 @@ class Equilibria {
     mechanics::ContactProblem problem_;
     Gauge gauge_;
     double tolerance_;
-    double seat_ = 0.0;
     mechanics::Equilibrium last_;
 };
 

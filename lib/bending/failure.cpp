@@ -57,9 +57,8 @@ class Failure {
           options_(options),
           spheres_(mechanics::elastic_spheres(result.specimen.state, result.specimen.body)),
           equilibria_(result.specimen, result.fixture, options),
-          force_(estimated_stiffness(result.specimen, result.fixture) * greatest_deflection(result.specimen, options)) {
+          force_(expected_force(result.specimen, result.fixture, options)) {
         result_.broken.assign(result.specimen.body.network.bonds(), 0);
-        equilibria_.seat(force_);
     }
 
     /// False once the force has fallen far enough.

@@ -138,6 +138,11 @@ double estimated_stiffness(const Specimen& specimen, const Fixture& fixture) {
     return specimen.relative_density * specimen.young_modulus / softness;
 }
 
+double expected_force(const Specimen& specimen, const Fixture& fixture, const Options& options) {
+    if (options.max_force > 0.0) return options.max_force;
+    return estimated_stiffness(specimen, fixture) * greatest_deflection(specimen, options);
+}
+
 mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture) {
     const std::vector<Sphere> spheres = spheres_of(specimen);
     mechanics::Tooling tooling;

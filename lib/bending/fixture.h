@@ -30,6 +30,9 @@ double greatest_deflection(const Specimen& specimen, const Options& options);
 /// Force over deflection if the bar were as stiff as the solid's share of its volume, N/m: where searches begin.
 double estimated_stiffness(const Specimen& specimen, const Fixture& fixture);
 
+/// Force at which unloading begins, N: the option's, or about that of its deflection.
+double expected_force(const Specimen& specimen, const Fixture& fixture, const Options& options);
+
 /// Particles that a cylinder can come to touch; each cylinder just touches its nearest one. Throws Error if one finds none.
 mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture);
 

@@ -16,9 +16,8 @@ constexpr int most_steps = 200;
 /// Rotation vector of the rigid bar under the cylinders as they touch it now, as if it were small, rad.
 Vec3 turn_under_cylinders(const Specimen& specimen, const Fixture& fixture, double force) {
     const mechanics::Tooling tooling = find_contacts(specimen, fixture);
-    mechanics::ContactProblem rigid(specimen.body.network, nullptr, tooling.contacts);
-    rigid.seat(force);
-    return rigid.displacement().front().tail<3>() / specimen.body.network.rotation_length;
+    const mechanics::BondNetwork& network = specimen.body.network;
+    return mechanics::seat_rigid(network, tooling.contacts, force).displacement.front().tail<3>() / network.rotation_length;
 }
 
 void turn_bar(Specimen& specimen, const Vec3& turn) {
@@ -38,8 +37,7 @@ void turn_bar(Specimen& specimen, const Vec3& turn) {
 }  // namespace
 
 void seat_bar(Specimen& specimen, const Fixture& fixture, const Options& options) {
-    const double force =
-        seating_force * estimated_stiffness(specimen, fixture) * greatest_deflection(specimen, options);
+    const double force = seating_force * expected_force(specimen, fixture, options);
     specimen.moved.assign(specimen.body.network.nodes(), Vec3::Zero());
     double longest = largest_turn;
     Vec3 last = Vec3::Zero();

@@ -31,13 +31,9 @@ Level loaded(Equilibria& levels, double force, bool exact, const Options& option
 
 /// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
 Level peak_level(Equilibria& levels, const Options& options, Result& result) {
-    if (options.max_force > 0.0) {
-        levels.seat(options.max_force);
-        return loaded(levels, options.max_force, true, options, result);
-    }
+    if (options.max_force > 0.0) return loaded(levels, options.max_force, true, options, result);
     const double wanted = greatest_deflection(result.specimen, options);
-    double force = estimated_stiffness(result.specimen, result.fixture) * wanted;
-    levels.seat(force);
+    double force = expected_force(result.specimen, result.fixture, options);
     Level level = loaded(levels, force, false, options, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
     double slope = level.point.force / level.point.deflection;

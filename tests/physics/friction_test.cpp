@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mechanics/contact_grips.h"
+#include "mechanics/tangential_contacts.h"
 #include "mechanics/explicit_contacts.h"
 #include "physics/hertz.h"
 #include "tests/physics/bar_files.h"
@@ -52,7 +52,7 @@ class StaticContact {
     }
 
    private:
-    mechanics::ContactGrips grips_{friction};
+    mechanics::TangentialContacts grips_{friction};
 };
 
 /// The contact of a dynamic test: a particle under a punch that stands still.
@@ -169,7 +169,7 @@ TEST_CASE_TEMPLATE("pressing harder or less makes no energy: a growing contact k
 }
 
 TEST_CASE("a contact that closes within a step slides for its share of it") {
-    mechanics::ContactGrips grips(10.0);
+    mechanics::TangentialContacts grips(10.0);
     grips.add(radius, modulus, shear_modulus, -3.0 * overlap, Vec3::Zero());
     Eigen::VectorXd depth(1);
     depth << overlap;

@@ -1,4 +1,4 @@
-// contact_grips.h: friction of the contacts of a body that goes from one equilibrium to the next.
+// tangential_contacts.h: friction of the contacts of a body that goes from one equilibrium to the next.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,10 +11,10 @@ namespace kiln::mechanics {
 /// A tangential spring for each contact, with what it has gone through. Forces of a step follow from how far the surfaces slid
 /// since the last equilibrium that was kept, for a stiffness and a limit that are given beforehand and followed up: so each search
 /// is for the minimum of a convex energy. A contact that closes within a step slides for its share of it.
-class ContactGrips {
+class TangentialContacts {
    public:
     /// friction: coefficient, of all contacts.
-    explicit ContactGrips(double friction) : friction_(friction) {}
+    explicit TangentialContacts(double friction) : friction_(friction) {}
 
     bool active() const { return friction_ > 0.0; }
 
@@ -24,6 +24,9 @@ class ContactGrips {
 
     /// Contacts that stick, each as stiff as one that carries the force (N): where the search for a first equilibrium begins.
     void stick(double force);
+
+    /// True until such a search has begun, and again after a release.
+    bool undecided() const { return undecided_; }
 
     /// Takes stiffness and limit of every contact from its overlap (m). Returns the largest change of a limit, N.
     double follow(const Eigen::VectorXd& overlap);
@@ -61,6 +64,7 @@ class ContactGrips {
 
     double friction_;
     std::vector<Contact> contacts_;
+    bool undecided_ = true;
     double lost_ = 0.0;  // J, until the last equilibrium kept
 };
 

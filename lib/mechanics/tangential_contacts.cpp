@@ -1,5 +1,5 @@
-// contact_grips.cpp: stiffness, limit and losses of the contacts' tangential springs.
-#include "mechanics/contact_grips.h"
+// tangential_contacts.cpp: stiffness, limit and losses of the contacts' tangential springs.
+#include "mechanics/tangential_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,19 +15,20 @@ Vec3 row_of(const Eigen::VectorXd& rows, std::size_t contact) { return rows.segm
 
 }  // namespace
 
-Vec3 ContactGrips::stretch(const Contact& contact, const Vec3& slide) {
+Vec3 TangentialContacts::stretch(const Contact& contact, const Vec3& slide) {
     return contact.carried + contact.share * (slide - contact.slide);
 }
 
-Vec3 ContactGrips::held(const Contact& contact, const Vec3& slide) {
+Vec3 TangentialContacts::held(const Contact& contact, const Vec3& slide) {
     return physics::held_stretch(stretch(contact, slide), contact.stiffness, contact.limit);
 }
 
-void ContactGrips::add(double radius, double modulus, double shear_modulus, double overlap, const Vec3& slide) {
+void TangentialContacts::add(double radius, double modulus, double shear_modulus, double overlap, const Vec3& slide) {
     contacts_.push_back({radius, modulus, shear_modulus, overlap, slide, {}});
 }
 
-void ContactGrips::stick(double force) {
+void TangentialContacts::stick(double force) {
+    undecided_ = false;
     for (Contact& contact : contacts_) {
         const double overlap = physics::hertz_overlap(contact.modulus, contact.radius, force);
         contact.stiffness = physics::mindlin_stiffness(contact.shear_modulus, contact.radius, overlap);
@@ -35,7 +36,7 @@ void ContactGrips::stick(double force) {
     }
 }
 
-double ContactGrips::follow(const Eigen::VectorXd& overlap) {
+double TangentialContacts::follow(const Eigen::VectorXd& overlap) {
     double change = 0.0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         Contact& contact = contacts_[c];
@@ -50,7 +51,7 @@ double ContactGrips::follow(const Eigen::VectorXd& overlap) {
     return change;
 }
 
-physics::FrictionPotential ContactGrips::potential(std::size_t contact, const Vec3& slide) const {
+physics::FrictionPotential TangentialContacts::potential(std::size_t contact, const Vec3& slide) const {
     const Contact& here = contacts_[contact];
     physics::FrictionPotential result = physics::friction_potential(stretch(here, slide), here.stiffness, here.limit);
     result.energy /= here.share;
@@ -58,7 +59,7 @@ physics::FrictionPotential ContactGrips::potential(std::size_t contact, const Ve
     return result;
 }
 
-double ContactGrips::stored(const Eigen::VectorXd& slide) const {
+double TangentialContacts::stored(const Eigen::VectorXd& slide) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         sum += physics::Grip{contacts_[c].stiffness, held(contacts_[c], row_of(slide, c))}.energy();
@@ -66,7 +67,7 @@ double ContactGrips::stored(const Eigen::VectorXd& slide) const {
     return sum;
 }
 
-double ContactGrips::lost(const Eigen::VectorXd& slide) const {
+double TangentialContacts::lost(const Eigen::VectorXd& slide) const {
     double sum = lost_;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         const Contact& contact = contacts_[c];
@@ -79,7 +80,7 @@ double ContactGrips::lost(const Eigen::VectorXd& slide) const {
     return sum;
 }
 
-void ContactGrips::keep(const Eigen::VectorXd& overlap, const Eigen::VectorXd& slide) {
+void TangentialContacts::keep(const Eigen::VectorXd& overlap, const Eigen::VectorXd& slide) {
     lost_ = lost(slide);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         Contact& contact = contacts_[c];
@@ -92,7 +93,8 @@ void ContactGrips::keep(const Eigen::VectorXd& overlap, const Eigen::VectorXd& s
     }
 }
 
-void ContactGrips::release(const Eigen::VectorXd& overlap, const Eigen::VectorXd& slide) {
+void TangentialContacts::release(const Eigen::VectorXd& overlap, const Eigen::VectorXd& slide) {
+    undecided_ = true;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         Contact& contact = contacts_[c];
         lost_ += contact.grip.energy();
