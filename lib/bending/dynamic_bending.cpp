@@ -145,6 +145,8 @@ void Strokes::keep_peak() {
     result_.peak.contact_force = motion_.contacts().wall_forces();
     result_.peak.closed_gaps = motion_.contacts().touching_pairs();
     read_contacts(result_, find_contacts(result_.specimen, result_.fixture), result_.peak);
+    if (!result_.on_both_supports)
+        throw Error("at the largest force the bar lies on one support only; a moving punch (--punch-velocity) is too fast for it");
 }
 
 /// Down until the punch stands still at about the wanted deflection: it turns early enough to stop there.

@@ -1,6 +1,7 @@
 // fixture.h: the three cylinders of the test, what they can touch, and how the deflection is read.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,8 +37,9 @@ double expected_force(const Specimen& specimen, const Fixture& fixture, const Op
 /// Particles that a cylinder can come to touch; each cylinder just touches its nearest one. Throws Error if one finds none.
 mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture);
 
-/// Distance between the resultants of the two supports' forces along z (N, one a contact, on the particle), m.
-double held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const Vec3> force);
+/// Distance between the resultants of the two supports' forces along z (N, one a contact, on the particle), m; none if one
+/// support carries nothing.
+std::optional<double> held_span(const Specimen& specimen, const mechanics::Tooling& tooling, std::span<const Vec3> force);
 
 /// Horizontal force of the supports that presses the bar together along x, their mean, N: that of friction.
 double thrust(const mechanics::Tooling& tooling, std::span<const Vec3> force);

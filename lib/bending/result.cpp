@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
 #include "bending/seating.h"
@@ -41,7 +42,9 @@ void read_contacts(Result& result, const mechanics::Tooling& tooling, const mech
     result.contacts =
         static_cast<std::size_t>(std::ranges::count_if(forces, [](const Vec3& force) { return force != Vec3::Zero(); }));
     result.closed_gaps = equilibrium.closed_gaps;
-    result.held_span = held_span(result.specimen, tooling, forces);
+    const std::optional<double> held = held_span(result.specimen, tooling, forces);
+    result.on_both_supports = held.has_value();
+    result.held_span = held.value_or(result.fixture.span);
     result.thrust = thrust(tooling, forces);
 }
 
@@ -61,6 +64,11 @@ void add_warnings(Result& result, const Options& options) {
         warnings.push_back("the bar rolls by " + digits(roll) +
                            " rad before it rests on its cylinders, so it does not bend about the axis of its section: it is too "
                            "few particles across");
+    }
+    if (!result.on_both_supports) {
+        warnings.push_back(
+            "at the largest force the bar lies on one support only, wedged by friction or about to part; effective_span is the "
+            "nominal one");
     }
     double deflection = 0.0;
     for (const Point& point : result.curve) deflection = std::max(deflection, std::abs(point.deflection));

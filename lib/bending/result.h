@@ -39,6 +39,7 @@ struct Result {
     std::vector<mechanics::BondLoad> loads;  // of the bonds there
     double peak_force = 0.0;                 // N
     double held_span = 0.0;                  // m, between the supports' resultants under the greatest force
+    bool on_both_supports = true;            // there
     double thrust = 0.0;                     // N, there, see thrust() of fixture.h
     std::size_t contacts = 0;                // that carry force there
     std::size_t closed_gaps = 0;             // pairs without a bond that come to touch there

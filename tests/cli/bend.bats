@@ -191,3 +191,10 @@ PROGRAM
     run -0 --separate-stderr "$BEND" -q --shear-strength 4445.34MPa "$DATA/bend/no_punch_force.kiln"
     jq -e '.strength.breaks > 5 and (.curve.force | length) == .strength.breaks + 2 and .energy.error < 5e-3' <<<"$output"
 }
+
+@test "a bar that friction wedges on one support has its curve, and a warning" {
+    "$SINTER" green -q -n 31 --density 0.5 --method affine --compact-to 0.625 --aspect 4.53:1:1 --seed 513636 | "$BONDIFY" -q -o "$BATS_TEST_TMPDIR/wedged.kiln"
+    run -0 --separate-stderr "$BEND" --cycles 1 --bond-law neck --friction 0.3 "$BATS_TEST_TMPDIR/wedged.kiln"
+    assert_regex "$stderr" "lies on one support only"
+    jq -e '.effective_span == .span and (.curve.force | length) == 13' <<<"$output"
+}

@@ -76,8 +76,6 @@ def faults_of_friction(result, status):
         yield f"status {status}"
     if status == 3 and not result["residual"] <= LARGEST_RESIDUAL:
         yield f"residual {result['residual']:.3g}"
-    if not result["energy"]["error"] < 0.1:
-        yield f"energy.error {result['energy']['error']:.3g}"
 
 
 def sweep(kind, count, dice, draw, faults_of):
