@@ -62,12 +62,12 @@ def fired(trial, firing, state, *wanted, name="green.kiln", statuses=(0,)):
     return trial.states("sinter", *firing.arguments(*wanted), trial.put(name, state), statuses=statuses)
 
 
-def alike(found, wanted):
-    """Two states of the same particles after the same time."""
+def alike(found, wanted, tolerance=REORDERED):
+    """Breaks unless these are states of the same particles after the same time, densities to a tolerance."""
     near("time", found["time"], wanted["time"], 1e-12)
     near("density after a step", found["first"]["relative_density"], wanted["first"]["relative_density"], FIRST)
-    near("density", density_of(found), density_of(wanted), REORDERED)
-    near("edges", lengths(found), lengths(wanted), REORDERED)
+    near("density", density_of(found), density_of(wanted), tolerance)
+    near("edges", lengths(found), lengths(wanted), tolerance)
     apart = numpy.linalg.norm(offsets(found, wanted), axis=1) / wanted["particles"]["radius"].mean()
     near("median of offsets, in radii", numpy.median(apart), 0, PLACES, 1.0)
     near("offset of a particle, in radii", apart.max(), 0, PLACE, 1.0)
