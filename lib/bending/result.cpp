@@ -14,7 +14,7 @@ namespace kiln::bending {
 namespace {
 
 constexpr double large_roll = 0.1;           // rad, at rest: the section that bends is no longer the one that was cut
-constexpr double large_tilt_error = 0.01;    // of the deflection: heights of contacts that small rotations neglect
+constexpr double large_tilt_error = 0.1;     // of the deflection: heights that small rotations neglect; forces change by less
 constexpr double large_energy_error = 5e-3;  // of the energy stored, in a test to failure
 constexpr double large_step_error = 0.05;    // the same, of levels that only --points can bring nearer to each other
 constexpr double large_damping = 0.01;       // of the energy stored at the peak, in a cycle
