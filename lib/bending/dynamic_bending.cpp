@@ -49,7 +49,7 @@ class Strokes {
           watch_(watch),
           gauge_(result.specimen, result.fixture),
           deflection_(options.max_force > 0.0 ? options.max_force / estimated_stiffness(result.specimen, result.fixture)
-                                              : greatest_deflection(result.specimen, options)),
+                                              : max_deflection_of(result.specimen, options)),
           motion_(make_motion()) {}
 
     /// False if the watch stopped it.

@@ -16,12 +16,12 @@ namespace {
 /// Of its stiffness that a broken bond keeps, so that a particle that hangs on nothing else stays in its place.
 constexpr double remnant = 1e-6;
 constexpr double strength_tolerance = 1e-3;  // of the stress at which a bond breaks
-constexpr int most_trials = 100;
+constexpr int max_trials = 100;
 constexpr double narrowest = 1e-12;        // bracket of the force at which a bond breaks, over that force
 constexpr double work_tolerance = 2e-5;    // of the work between two breaks, over the most energy that was stored
 constexpr double tenth = 0.1;
-constexpr int most_halvings = 24;          // of the steps of force between two breaks
-constexpr std::size_t most_breaks = 100000;
+constexpr int max_halvings = 24;          // of the steps of force between two breaks
+constexpr std::size_t max_breaks = 100000;
 
 struct Weakest {
     std::size_t bond = 0;
@@ -66,8 +66,8 @@ class Failure {
         const Weakest weakest = load();
         account();
         if (level_.point.force <= options_.until * result_.peak_force) return false;
-        if (++result_.breaks == most_breaks)
-            throw Error("the bar did not fail although " + std::to_string(most_breaks) + " bonds broke");
+        if (++result_.breaks == max_breaks)
+            throw Error("the bar did not fail although " + std::to_string(max_breaks) + " bonds broke");
         crack(weakest.bond);
         if (holds()) {
             relax();
@@ -90,7 +90,7 @@ class Failure {
     /// Gap between the work of the punch and all energy, over the most that was stored.
     double energy_gap() const {
         const FailureEnergy& energy = result_.failure;
-        return std::abs(energy.work - energy.stored - energy.dissipated) / most_stored_;
+        return std::abs(energy.work - energy.stored - energy.dissipated) / max_stored_;
     }
 
    private:
@@ -100,7 +100,7 @@ class Failure {
         struct Side {
             double force = 0.0, excess = 0.0;  // N; ratio - 1, halved whenever the other side is moved again (Illinois)
         } below, above;
-        for (int trial = 0; trial < most_trials; ++trial) {
+        for (int trial = 0; trial < max_trials; ++trial) {
             const Weakest weakest = try_force();
             if (!(weakest.ratio > 0.0)) throw Error("no bond of the bar is stressed towards the strength given, so none breaks");
             if (std::abs(weakest.ratio - 1.0) <= strength_tolerance) return weakest;
@@ -130,7 +130,7 @@ class Failure {
     /// Takes the point to the curve and to the balance of energy. Up to the first break the bar is elastic: it stores the work.
     void account() {
         const Point& here = level_.point;
-        most_stored_ = std::max(most_stored_, level_.energy);
+        max_stored_ = std::max(max_stored_, level_.energy);
         result_.failure.work += result_.breaks == 0 ? level_.energy : work_since_break();
         result_.failure.stored = level_.energy;
         result_.curve.push_back(here);
@@ -151,7 +151,7 @@ class Failure {
         for (int halvings = 0; !ahead.empty();) {
             const Level& to = ahead.back();
             const WorkOfStep work = work_of_step(from, to);
-            if (work.uncertainty <= work_tolerance * most_stored_ || halvings == most_halvings) {
+            if (work.uncertainty <= work_tolerance * max_stored_ || halvings == max_halvings) {
                 sum += work.value;
                 from = to;
                 ahead.pop_back();
@@ -200,7 +200,7 @@ class Failure {
     std::vector<mechanics::ElasticSphere> spheres_;
     Equilibria equilibria_;
     double force_;
-    double most_stored_ = 0.0;   // J
+    double max_stored_ = 0.0;   // J
     double progress_ = 0.0;
     Level level_{}, relaxed_{};  // as the last bond broke; after it, under the punch that stands still
 };

@@ -129,7 +129,7 @@ Fixture place_fixture(const Specimen& specimen, const Options& options) {
     return fixture;
 }
 
-double greatest_deflection(const Specimen& specimen, const Options& options) {
+double max_deflection_of(const Specimen& specimen, const Options& options) {
     return options.max_deflection > 0.0 ? options.max_deflection : default_deflection * specimen.size[2];
 }
 
@@ -140,7 +140,7 @@ double estimated_stiffness(const Specimen& specimen, const Fixture& fixture) {
 
 double expected_force(const Specimen& specimen, const Fixture& fixture, const Options& options) {
     if (options.max_force > 0.0) return options.max_force;
-    return estimated_stiffness(specimen, fixture) * greatest_deflection(specimen, options);
+    return estimated_stiffness(specimen, fixture) * max_deflection_of(specimen, options);
 }
 
 mechanics::Tooling find_contacts(const Specimen& specimen, const Fixture& fixture) {

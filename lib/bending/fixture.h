@@ -26,7 +26,7 @@ Fixture place_fixture(const Specimen& specimen, const Options& options);
 bool reaches_supports(const Specimen& specimen, const Fixture& fixture, std::span<const std::int32_t> rows);
 
 /// Deflection at which unloading begins, m: the option's, or its default.
-double greatest_deflection(const Specimen& specimen, const Options& options);
+double max_deflection_of(const Specimen& specimen, const Options& options);
 
 /// Force over deflection if the bar were as stiff as the solid's share of its volume, N/m: where searches begin.
 double estimated_stiffness(const Specimen& specimen, const Fixture& fixture);

@@ -9,9 +9,9 @@ namespace kiln::bending {
 namespace {
 
 constexpr double seating_force = 1e-9;  // of the estimated force at the greatest deflection
-constexpr double largest_turn = 0.05;   // rad, of one step: contacts that it meets on the way are not run over
-constexpr double smallest_turn = 1e-7;  // rad, at which the bar is at rest; what it neglects goes with the square
-constexpr int most_steps = 200;
+constexpr double max_turn = 0.05;   // rad, of one step: contacts that it meets on the way are not run over
+constexpr double min_turn = 1e-7;  // rad, at which the bar is at rest; what it neglects goes with the square
+constexpr int max_steps = 200;
 
 /// Rotation vector of the rigid bar under the cylinders as they touch it now, as if it were small, rad.
 Vec3 turn_under_cylinders(const Specimen& specimen, const Fixture& fixture, double force) {
@@ -39,11 +39,11 @@ void turn_bar(Specimen& specimen, const Vec3& turn) {
 void seat_bar(Specimen& specimen, const Fixture& fixture, const Options& options) {
     const double force = seating_force * expected_force(specimen, fixture, options);
     specimen.moved.assign(specimen.body.network.nodes(), Vec3::Zero());
-    double longest = largest_turn;
+    double longest = max_turn;
     Vec3 last = Vec3::Zero();
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < max_steps; ++step) {
         Vec3 turn = turn_under_cylinders(specimen, fixture, force);
-        if (turn.norm() <= smallest_turn) return;
+        if (turn.norm() <= min_turn) return;
         if (turn.dot(last) < 0.0) longest *= 0.5;  // to and fro: between two contacts that small rotations cannot tell apart
         if (turn.norm() > longest) turn *= longest / turn.norm();
         turn_bar(specimen, turn);

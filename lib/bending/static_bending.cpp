@@ -12,7 +12,7 @@ namespace kiln::bending {
 namespace {
 
 constexpr double deflection_tolerance = 1e-6;
-constexpr int most_trials = 12;
+constexpr int max_trials = 12;
 
 /// The equilibrium under a force that has risen from nothing: at once if the bar is elastic, in the curve's steps if there is
 /// friction.
@@ -32,13 +32,13 @@ Level loaded(Equilibria& levels, double force, bool exact, const Options& option
 /// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
 Level peak_level(Equilibria& levels, const Options& options, Result& result) {
     if (options.max_force > 0.0) return loaded(levels, options.max_force, true, options, result);
-    const double wanted = greatest_deflection(result.specimen, options);
+    const double wanted = max_deflection_of(result.specimen, options);
     double force = expected_force(result.specimen, result.fixture, options);
     Level level = loaded(levels, force, false, options, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
     double slope = level.point.force / level.point.deflection;
     bool exact = false;
-    for (int trial = 0; trial < most_trials; ++trial) {
+    for (int trial = 0; trial < max_trials; ++trial) {
         const double missing = wanted - level.point.deflection;
         if (exact && std::abs(missing) <= deflection_tolerance * wanted) return level;
         force = level.point.force + slope * missing;

@@ -29,7 +29,7 @@ ExplicitContacts::ExplicitContacts(const BondNetwork& network, std::vector<Elast
       tooling_(std::move(tooling)),
       friction_(friction),
       margin_(margin * network.rotation_length),
-      wall_grip_(tooling_.contacts.size()),
+      wall_spring_(tooling_.contacts.size()),
       wall_force_(tooling_.contacts.size(), Vec3::Zero()) {
     search(Vector(network.nodes(), Vec6::Zero()));
 }
@@ -37,15 +37,15 @@ ExplicitContacts::ExplicitContacts(const BondNetwork& network, std::vector<Elast
 /// Pairs near each other now; springs of pairs that were near before are kept.
 void ExplicitContacts::search(const Vector& displacement) {
     std::vector<PairContact> found = near_pairs(network_, spheres_, displacement, margin_);
-    std::vector<physics::Grip> grip(found.size());
+    std::vector<physics::TangentialSpring> spring(found.size());
     std::size_t old = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
         const std::array key{found[k].i, found[k].j};
         while (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} < key) ++old;
-        if (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} == key) grip[k] = pair_grip_[old];
+        if (old < pairs_.size() && std::array{pairs_[old].i, pairs_[old].j} == key) spring[k] = pair_spring_[old];
     }
     pairs_ = std::move(found);
-    pair_grip_ = std::move(grip);
+    pair_spring_ = std::move(spring);
     overlap_.resize(pairs_.size());
     searched_at_ = displacement;
 }
@@ -61,18 +61,18 @@ double ExplicitContacts::farthest_since_search(const Vector& displacement) const
 }
 
 /// Moves the tangential spring along by `slide`, m, the way of the other surface against the sphere's; force on the sphere, N.
-Vec3 ExplicitContacts::held(const Touch& touch, const Vec3& slide, physics::Grip& grip) {
+Vec3 ExplicitContacts::friction_force(const Touch& touch, const Vec3& slide, physics::TangentialSpring& spring) {
     const double stiffness = physics::mindlin_stiffness(touch.shear_modulus, touch.radius, touch.overlap);
     const double limit = friction_ * physics::hertz_contact(touch.modulus, touch.radius, touch.overlap).force;
-    const physics::Grip before = std::exchange(grip, {stiffness, physics::carried_stretch(grip, stiffness)});
-    loss_ += before.energy() - grip.energy();
-    grip.stretch += slide;
-    grip.stretch -= grip.stretch.dot(touch.normal) * touch.normal;
-    const double wanted = grip.stretch.norm();
-    grip.stretch = physics::held_stretch(grip.stretch, stiffness, limit);
-    loss_ += limit * (wanted - grip.stretch.norm());
-    energy_ += grip.energy();
-    return stiffness * grip.stretch;
+    const physics::TangentialSpring before = std::exchange(spring, {stiffness, physics::carried_displacement(spring, stiffness)});
+    loss_ += before.energy() - spring.energy();
+    spring.displacement += slide;
+    spring.displacement -= spring.displacement.dot(touch.normal) * touch.normal;
+    const double wanted = spring.displacement.norm();
+    spring.displacement = physics::elastic_displacement(spring.displacement, stiffness, limit);
+    loss_ += limit * (wanted - spring.displacement.norm());
+    energy_ += spring.energy();
+    return stiffness * spring.displacement;
 }
 
 void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force) {
@@ -85,7 +85,7 @@ void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& veloc
     }
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         if (overlap_[k] <= 0.0) {
-            loss_ += std::exchange(pair_grip_[k], {}).energy();
+            loss_ += std::exchange(pair_spring_[k], {}).energy();
             continue;
         }
         const PairContact& pair = pairs_[k];
@@ -98,7 +98,7 @@ void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& veloc
         ++touching_pairs_;
         if (friction_ > 0.0) {
             const Vec3 slide = dt * (surface_velocity(velocity[j], arm_j, length) - surface_velocity(velocity[i], arm_i, length));
-            on_i += held({normal, overlap_[k], pair.radius, pair.modulus, pair.shear_modulus}, slide, pair_grip_[k]);
+            on_i += friction_force({normal, overlap_[k], pair.radius, pair.modulus, pair.shear_modulus}, slide, pair_spring_[k]);
         }
         force[i].head<3>() += on_i;
         force[j].head<3>() -= on_i;
@@ -120,7 +120,7 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
         const double distance = towards.norm(), overlap = cylinder.radius + contact.radius - distance;
         wall_force_[c].setZero();
         if (overlap <= 0.0) {
-            loss_ += std::exchange(wall_grip_[c], {}).energy();
+            loss_ += std::exchange(wall_spring_[c], {}).energy();
             continue;
         }
         const Vec3 normal = towards / distance, arm = contact.radius * normal;
@@ -130,7 +130,7 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
         if (friction_ > 0.0) {
             const Vec3 wall_velocity(0.0, 0.0, cylinder.punch ? -punch_velocity : 0.0);
             const Vec3 slide = dt * (wall_velocity - surface_velocity(velocity[node], arm, length));
-            on_sphere += held({normal, overlap, contact.radius, contact.modulus, contact.shear_modulus}, slide, wall_grip_[c]);
+            on_sphere += friction_force({normal, overlap, contact.radius, contact.modulus, contact.shear_modulus}, slide, wall_spring_[c]);
             force[node].tail<3>() += arm.cross(on_sphere) / length;
         } else {
             on_sphere[0] = 0.0;

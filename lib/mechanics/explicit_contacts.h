@@ -42,7 +42,7 @@ class ExplicitContacts {
     void add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force);
     void add_walls(const Vector& displacement, const Vector& velocity, double travel, double punch_velocity, double dt,
                    Vector& force);
-    Vec3 held(const Touch& touch, const Vec3& slide, physics::Grip& grip);
+    Vec3 friction_force(const Touch& touch, const Vec3& slide, physics::TangentialSpring& spring);
 
     const BondNetwork& network_;
     std::vector<ElasticSphere> spheres_;
@@ -50,7 +50,7 @@ class ExplicitContacts {
     double friction_, margin_;
     std::vector<PairContact> pairs_;
     std::vector<double> overlap_;  // of the pairs, m
-    std::vector<physics::Grip> pair_grip_, wall_grip_;
+    std::vector<physics::TangentialSpring> pair_spring_, wall_spring_;
     std::vector<Vec3> wall_force_;
     Vector searched_at_;  // displacements at the last search
     double punch_force_ = 0.0, energy_ = 0.0, loss_ = 0.0;

@@ -41,16 +41,16 @@ ExplicitMotion::ExplicitMotion(const BondNetwork& network, std::vector<ElasticSp
       force_(displacement_),
       hold_(network.bonds()),
       bond_force_(network.bonds(), Vec3::Zero()),
-      bond_lever_(network.bonds(), Vec3::Zero()),
+      shear_moment_(network.bonds(), Vec3::Zero()),
       damped_(network.nodes(), 0.0) {
-    choose_time_step(tooling.contacts, model.greatest_force);
+    choose_time_step(tooling.contacts, model.max_force);
 }
 
-void ExplicitMotion::choose_time_step(const std::vector<WallContact>& walls, double greatest_force) {
+void ExplicitMotion::choose_time_step(const std::vector<WallContact>& walls, double max_force) {
     const BlockMatrix matrix = stiffness_matrix(network_);
     std::vector<double> contact(network_.nodes(), 0.0);  // N/m, of the stiffest contact that a node may have
     const auto note = [&](std::int32_t node, double modulus, double radius) {
-        const double overlap = physics::hertz_overlap(modulus, radius, greatest_force);
+        const double overlap = physics::hertz_overlap(modulus, radius, max_force);
         contact[at(node)] = std::max(contact[at(node)], physics::hertz_contact(modulus, radius, overlap).stiffness);
     };
     for (const WallContact& wall : walls) note(wall.node, wall.modulus, wall.radius);
@@ -107,7 +107,7 @@ void ExplicitMotion::move_bonds() {
                               dt * per_length * velocity_[j].tail<3>());
         const double tension = k.normal * physics::lengthening(network_.vector[bond], shift);
         bond_force_[bond] = tension / vector.norm() * vector + hold.shear;
-        bond_lever_[bond] = 0.5 * vector.cross(hold.shear);
+        shear_moment_[bond] = 0.5 * vector.cross(hold.shear);
     }
 }
 
@@ -120,7 +120,7 @@ void ExplicitMotion::gather() {
             const std::size_t bond = at(incidence_.bond[at(k)]);
             const double side = at(network_.pair[bond][0]) == node ? 1.0 : -1.0;
             force += side * bond_force_[bond];
-            moment += bond_lever_[bond] + side * hold_[bond].moment;
+            moment += shear_moment_[bond] + side * hold_[bond].moment;
         }
         force_[node] << force, per_length * moment;
     }

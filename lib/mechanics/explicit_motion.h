@@ -12,7 +12,7 @@ namespace kiln::mechanics {
 struct MotionModel {
     double damping = 0.0;         // of the unbalanced force, against the velocity (Cundall 1987): below 1, without unit
     double friction = 0.0;        // coefficient of all contacts
-    double greatest_force = 0.0;  // N, that one contact may come to carry: what the time step is chosen for
+    double max_force = 0.0;  // N, that one contact may come to carry: what the time step is chosen for
 };
 
 /// Where the work of the punch has gone; J.
@@ -52,7 +52,7 @@ class ExplicitMotion {
     std::vector<BondLoad> loads() const;
 
    private:
-    void choose_time_step(const std::vector<WallContact>& walls, double greatest_force);
+    void choose_time_step(const std::vector<WallContact>& walls, double max_force);
     void kick_and_drift();
     void move_bonds();
     void gather();
@@ -65,7 +65,7 @@ class ExplicitMotion {
     double time_step_ = 0.0;
     Vector displacement_, velocity_, force_;
     std::vector<physics::BondHold> hold_;
-    std::vector<Vec3> bond_force_, bond_lever_;  // N on the first node; N m on both
+    std::vector<Vec3> bond_force_, shear_moment_;  // N on the first node; N m on both
     std::vector<double> damped_;                 // J, dissipated at each node
     double travel_ = 0.0, punch_velocity_ = 0.0, work_ = 0.0;
 };

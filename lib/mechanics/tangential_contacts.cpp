@@ -15,12 +15,12 @@ Vec3 row_of(const Eigen::VectorXd& rows, std::size_t contact) { return rows.segm
 
 }  // namespace
 
-Vec3 TangentialContacts::stretch(const Contact& contact, const Vec3& slide) {
+Vec3 TangentialContacts::displacement(const Contact& contact, const Vec3& slide) {
     return contact.carried + contact.share * (slide - contact.slide);
 }
 
-Vec3 TangentialContacts::held(const Contact& contact, const Vec3& slide) {
-    return physics::held_stretch(stretch(contact, slide), contact.stiffness, contact.limit);
+Vec3 TangentialContacts::elastic(const Contact& contact, const Vec3& slide) {
+    return physics::elastic_displacement(displacement(contact, slide), contact.stiffness, contact.limit);
 }
 
 void TangentialContacts::add(double radius, double modulus, double shear_modulus, double overlap, const Vec3& slide) {
@@ -46,14 +46,14 @@ double TangentialContacts::follow(const Eigen::VectorXd& overlap) {
         contact.limit = limit;
         contact.stiffness = physics::mindlin_stiffness(contact.shear_modulus, contact.radius, now);
         contact.share = now > 0.0 && contact.overlap < 0.0 ? now / (now - contact.overlap) : 1.0;
-        contact.carried = physics::carried_stretch(contact.grip, contact.stiffness);
+        contact.carried = physics::carried_displacement(contact.spring, contact.stiffness);
     }
     return change;
 }
 
 physics::FrictionPotential TangentialContacts::potential(std::size_t contact, const Vec3& slide) const {
     const Contact& here = contacts_[contact];
-    physics::FrictionPotential result = physics::friction_potential(stretch(here, slide), here.stiffness, here.limit);
+    physics::FrictionPotential result = physics::friction_potential(displacement(here, slide), here.stiffness, here.limit);
     result.energy /= here.share;
     result.gradient *= here.share;
     return result;
@@ -62,7 +62,7 @@ physics::FrictionPotential TangentialContacts::potential(std::size_t contact, co
 double TangentialContacts::stored(const Eigen::VectorXd& slide) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-        sum += physics::Grip{contacts_[c].stiffness, held(contacts_[c], row_of(slide, c))}.energy();
+        sum += physics::TangentialSpring{contacts_[c].stiffness, elastic(contacts_[c], row_of(slide, c))}.energy();
     }
     return sum;
 }
@@ -71,9 +71,9 @@ double TangentialContacts::lost(const Eigen::VectorXd& slide) const {
     double sum = lost_;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         const Contact& contact = contacts_[c];
-        const Vec3 wanted = stretch(contact, row_of(slide, c));
-        const double slip = wanted.norm() - physics::held_stretch(wanted, contact.stiffness, contact.limit).norm();
-        sum += contact.grip.energy() - physics::Grip{contact.stiffness, contact.carried}.energy();
+        const Vec3 wanted = displacement(contact, row_of(slide, c));
+        const double slip = wanted.norm() - physics::elastic_displacement(wanted, contact.stiffness, contact.limit).norm();
+        sum += contact.spring.energy() - physics::TangentialSpring{contact.stiffness, contact.carried}.energy();
         // The limit grew or fell on the way.
         sum += 0.5 * (contact.last_limit + contact.limit) * slip;
     }
@@ -84,12 +84,12 @@ void TangentialContacts::keep(const Eigen::VectorXd& overlap, const Eigen::Vecto
     lost_ = lost(slide);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         Contact& contact = contacts_[c];
-        contact.grip = {contact.stiffness, held(contact, row_of(slide, c))};
+        contact.spring = {contact.stiffness, elastic(contact, row_of(slide, c))};
         contact.overlap = overlap[static_cast<Eigen::Index>(c)];
         contact.slide = row_of(slide, c);
         contact.last_limit = contact.limit;
         contact.share = 1.0;
-        contact.carried = contact.grip.stretch;
+        contact.carried = contact.spring.displacement;
     }
 }
 
@@ -97,7 +97,7 @@ void TangentialContacts::release(const Eigen::VectorXd& overlap, const Eigen::Ve
     undecided_ = true;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         Contact& contact = contacts_[c];
-        lost_ += contact.grip.energy();
+        lost_ += contact.spring.energy();
         contact = {
             contact.radius, contact.modulus, contact.shear_modulus, overlap[static_cast<Eigen::Index>(c)], row_of(slide, c), {}};
     }

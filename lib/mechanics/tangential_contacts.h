@@ -51,7 +51,7 @@ class TangentialContacts {
         // In the last equilibrium kept:
         double overlap;
         Vec3 slide;
-        physics::Grip grip;
+        physics::TangentialSpring spring;
         double last_limit = 0.0;
         // In this step:
         double stiffness = 0.0, limit = 0.0;
@@ -59,8 +59,8 @@ class TangentialContacts {
         Vec3 carried = Vec3::Zero();  // m
     };
 
-    static Vec3 stretch(const Contact& contact, const Vec3& slide);
-    static Vec3 held(const Contact& contact, const Vec3& slide);
+    static Vec3 displacement(const Contact& contact, const Vec3& slide);
+    static Vec3 elastic(const Contact& contact, const Vec3& slide);
 
     double friction_;
     std::vector<Contact> contacts_;

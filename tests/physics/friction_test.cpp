@@ -38,21 +38,21 @@ struct Dragged {
 class StaticContact {
    public:
     StaticContact() {
-        grips_.add(radius, modulus, shear_modulus, overlap, Vec3::Zero());
+        contacts_.add(radius, modulus, shear_modulus, overlap, Vec3::Zero());
         to(overlap, Vec3::Zero());
     }
     Dragged to(double depth, const Vec3& slide) {
         Eigen::VectorXd depths(1), slides(3);
         depths << depth;
         slides << slide;
-        grips_.follow(depths);
-        const Dragged here{-grips_.potential(0, slide).force, grips_.stored(slides), grips_.lost(slides)};
-        grips_.keep(depths, slides);
+        contacts_.follow(depths);
+        const Dragged here{-contacts_.potential(0, slide).force, contacts_.stored(slides), contacts_.lost(slides)};
+        contacts_.keep(depths, slides);
         return here;
     }
 
    private:
-    mechanics::TangentialContacts grips_{friction};
+    mechanics::TangentialContacts contacts_{friction};
 };
 
 /// The contact of a dynamic test: a particle under a punch that stands still.
@@ -169,12 +169,12 @@ TEST_CASE_TEMPLATE("pressing harder or less makes no energy: a growing contact k
 }
 
 TEST_CASE("a contact that closes within a step slides for its share of it") {
-    mechanics::TangentialContacts grips(10.0);
-    grips.add(radius, modulus, shear_modulus, -3.0 * overlap, Vec3::Zero());
+    mechanics::TangentialContacts contacts(10.0);
+    contacts.add(radius, modulus, shear_modulus, -3.0 * overlap, Vec3::Zero());
     Eigen::VectorXd depth(1);
     depth << overlap;
-    grips.follow(depth);
-    CHECK(grips.potential(0, Vec3(1e-12, 0.0, 0.0)).force[0] == relative(0.25e-12 * stiffness, 1e-12));
+    contacts.follow(depth);
+    CHECK(contacts.potential(0, Vec3(1e-12, 0.0, 0.0)).force[0] == relative(0.25e-12 * stiffness, 1e-12));
 }
 
 TEST_CASE("spheres that come from afar in a single step touch: contacts do not count on short steps") {
