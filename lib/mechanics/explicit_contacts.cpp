@@ -130,7 +130,8 @@ void ExplicitContacts::add_walls(const Vector& displacement, const Vector& veloc
         if (friction_ > 0.0) {
             const Vec3 wall_velocity(0.0, 0.0, cylinder.punch ? -punch_velocity : 0.0);
             const Vec3 slide = dt * (wall_velocity - surface_velocity(velocity[node], arm, length));
-            on_sphere += friction_force({normal, overlap, contact.radius, contact.modulus, contact.shear_modulus}, slide, wall_spring_[c]);
+            const Touch touch{normal, overlap, contact.radius, contact.modulus, contact.shear_modulus};
+            on_sphere += friction_force(touch, slide, wall_spring_[c]);
             force[node].tail<3>() += arm.cross(on_sphere) / length;
         } else {
             on_sphere[0] = 0.0;
