@@ -1,4 +1,4 @@
-# demo.mk: `make demo`, the study of the paper at 3,000 particles, in about a minute, into build/demo.
+# demo.mk: `make demo`, the study of the paper at 3,000 particles, in half a minute, into build/demo.
 DEMO_PARTICLES ?= 3000
 
 demo: $(PROGRAMS)               ## run the paper's study at 3,000 particles; all in build/demo/report.html

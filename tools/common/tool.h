@@ -53,7 +53,8 @@ void parse(CLI::App& app, int argc, char** argv, const Common& common);
 /// config file; not files, threads, output or verbosity), the seed if the tool has one, and a summary of what was done.
 Json history_entry(const std::string& tool, const CLI::App& app, const Json& summary);
 
-/// True once SIGINT or SIGTERM has arrived; long loops ask between steps, write what they have, and end with `interrupted`.
+/// True once SIGINT or SIGTERM has arrived; long loops ask between steps. sinter then writes the
+/// state that it reached, the other programs end without output; the status is `interrupted`.
 bool stop_requested();
 
 /// One warning sentence on stderr.

@@ -37,7 +37,7 @@ struct Options {
     /// Checks options against each other; throws CLI::ValidationError.
     void check(const std::string& output) const;
 
-    /// Settings of the method for a state; wanted times and the schedule count from the state's own time.
+    /// Settings of the method for a state at the time `start` (s), where the schedule begins; --at-time is on its own clock.
     sintering::SinteringSettings settings(double start) const;
 
     /// Time at which the run ends if nothing else ends it, s; infinity for a hold.
