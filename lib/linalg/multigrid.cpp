@@ -98,6 +98,10 @@ void Multigrid::build(NodeGeometry geometry) {
         level.inverse_diagonal = inverse_diagonal(matrix);
         if (level.largest_eigenvalue == 0.0) level.largest_eigenvalue = largest_eigenvalue(matrix, level.inverse_diagonal);
         const Aggregates aggregates = find_aggregates(matrix);
+        // Each level has fewer nodes than the one before, so the loop ends; nodes that nothing connects would never become fewer.
+        if (aggregates.root.size() >= at(matrix.rows()))
+            throw Error("the matrix has " + std::to_string(matrix.rows()) +
+                        " nodes that nothing connects, so it cannot be coarsened");
         level.prolongation = smoothed(matrix, level.inverse_diagonal, prolongation_damping / level.largest_eigenvalue,
                                       rigid_prolongation(aggregates, geometry));
         level.restriction = column_index(level.prolongation);

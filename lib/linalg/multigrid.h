@@ -16,6 +16,7 @@ namespace kiln::linalg {
 class Multigrid {
    public:
     /// matrix: symmetric positive definite, kept by reference; largest_eigenvalue: bound for that of the block-Jacobi matrix.
+    /// Throws Error where nodes are too many for a dense factorisation and none is connected to another.
     Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double largest_eigenvalue);
     Multigrid(const Multigrid&) = delete;  // coarse levels refer to matrices of their own
     Multigrid& operator=(const Multigrid&) = delete;
