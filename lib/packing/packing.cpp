@@ -78,6 +78,9 @@ void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) 
 
 State pack(const PackingOptions& options, const std::function<bool(const Relaxation&)>& watch) {
     const bool soft = options.method == Method::soft;
+    if (options.method == Method::loose && options.compact_to) throw Error("a loose packing is not compacted; affine ones are");
+    if (options.method == Method::affine && !options.compact_to)
+        throw Error("an affine packing requires the density to compact to");
     State state = random_state(options, soft ? options.density : options.density / std::pow(1.0 + options.swell, 3));
     RelaxationOptions wanted;
     wanted.damping = options.damping;

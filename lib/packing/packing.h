@@ -21,7 +21,7 @@ struct PackingOptions {
     SizeDistribution distribution = Monosize{100e-9};
     Method method = Method::loose;
     double density = 0.43;             // relative density: volume of all spheres over volume of the box
-    std::optional<double> compact_to;  // relative density
+    std::optional<double> compact_to;  // relative density, of affine always, of soft optionally, of loose never
     double swell = 0.01;               // loose, affine: share by which lengths shrink once no spheres overlap
     double mean_overlap = 0.02;        // soft: mean h/(r_i + r_j) of the contacts
     double damping = 0.295;            // of a pair, as a fraction of its critical damping
@@ -30,7 +30,8 @@ struct PackingOptions {
 };
 
 /// A packing in a box that is periodic in three axes, its rows ordered along a space-filling curve; one material, none named yet.
-/// Throws Error where the density cannot be reached, and Interrupted where watch ended the relaxation.
+/// Throws Error where compact_to does not fit the method or the density cannot be reached, and Interrupted where watch ended the
+/// relaxation.
 State pack(const PackingOptions& options, const std::function<bool(const Relaxation&)>& watch);
 
 }  // namespace kiln::packing

@@ -25,7 +25,7 @@ value() { jq -s "last | $2" "$1"; }
 @test "green: the history says how the body was made and what its contacts are" {
     run -0 "$SINTER" green -n 2000 --seed 5 --text -o body
     [ "$(jq -c '.history[0] | [.tool, .seed, .summary.method, .summary.seed]' body)" = '["sinter green",5,"loose",5]' ]
-    near "$(value body .history[0].summary.density)" 0.43 1e-12
+    near "$(value body .history[0].summary.relative_density)" 0.43 1e-12
     near "$(value body .history[0].summary.coordination_number)" 1.72 0.08
     near "$(value body .history[0].summary.mean_overlap_ratio)" 0.0067 0.08
     run -0 "$SINTER" green -n 200 --text -o unseeded
@@ -42,7 +42,10 @@ value() { jq -s "last | $2" "$1"; }
 
 @test "green: every method and every distribution" {
     "$SINTER" green -n 300 --method affine --compact-to 0.58 --text -o affine
-    near "$(value affine .history[0].summary.density)" 0.58 1e-12
+    near "$(value affine .history[0].summary.relative_density)" 0.58 1e-12
+    "$SINTER" green -n 300 --compact-to 0.58 --text -o compacted
+    [ "$(value compacted .history[0].summary.method)" = '"affine"' ]
+    run -0 cmp <(jq -c .particles compacted) <(jq -c .particles affine)
     "$SINTER" green -n 300 --method soft --mean-overlap 0.03 --density 0.5 --text -o soft
     near "$(value soft .history[0].summary.mean_overlap_ratio)" 0.0285 0.06
     "$SINTER" green -n 300 --distribution lognormal:100nm:1.4:50nm:200nm --text -o lognormal
@@ -60,7 +63,7 @@ value() { jq -s "last | $2" "$1"; }
     "$SINTER" green --config options.toml --material zirconia.json --text -o body
     [ "$(value body .materials[0].density)" = 6050 ]
     [ "$(value body '.particles.radius.data | length')" = 7 ]
-    near "$(value body .history[0].summary.density)" 0.3 1e-12
+    near "$(value body .history[0].summary.relative_density)" 0.3 1e-12
     echo 'partikles = 7' >options.toml
     run -2 "$SINTER" green --config options.toml
 }
@@ -68,7 +71,7 @@ value() { jq -s "last | $2" "$1"; }
 @test "green: wrong usage is one sentence and status 2" {
     local words
     for words in "-n 0" "-n -3" "-n many" "--density 0" "--density 0.75" "--method soft --density 1" "--diameter 100" "--diameter 0nm" \
-        "--method hard" "--method affine" "--compact-to 0.4" "--aspect 1:2" "--aspect 1:2:0" "--aspect 1:2:3:4" "--swell -0.1" \
+        "--method hard" "--method affine" "--method loose --compact-to 0.6" "--compact-to 0.4" "--aspect 1:2" "--aspect 1:2:0" "--aspect 1:2:3:4" "--swell -0.1" \
         "--mean-overlap 0.1" "--distribution normal:1nm:2" "--distribution lognormal:100nm:0.9" "--distribution lognormal:100:1.4" \
         "--distribution lognormal:100nm:1.2:300nm:400nm" "--distribution bimodal:1nm:2nm:1.5" \
         "--distribution bimodal:1nm:2nm:0.5 --diameter 1nm" "file.dem"; do

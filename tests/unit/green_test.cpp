@@ -189,6 +189,15 @@ TEST_CASE("green: affine compaction scales every centre and keeps the radii") {
         CHECK((compacted.particles.position[row] - factor * loose.particles.position[row]).norm() < 1e-13 * loose.box.lengths[0]);
 }
 
+TEST_CASE("green: only what is compacted has a density to compact to") {
+    PackingOptions options = few(10);
+    options.compact_to = 0.6;
+    CHECK_THROWS_WITH_AS(packed(options), doctest::Contains("loose packing is not compacted"), Error);
+    options.method = Method::affine;
+    options.compact_to.reset();
+    CHECK_THROWS_WITH_AS(packed(options), doctest::Contains("requires the density"), Error);
+}
+
 TEST_CASE("green: a soft packing ends at the wanted mean overlap") {
     PackingOptions options = few(2000);
     options.method = Method::soft;

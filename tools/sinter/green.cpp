@@ -61,7 +61,7 @@ Json summary_of(const PackingOptions& options, const State& state) {
             {"seed", options.seed},
             {"coordination_number", contacts.coordination_number},
             {"mean_overlap_ratio", contacts.mean_overlap_ratio},
-            {"density", relative_density(state)}};
+            {"relative_density", relative_density(state)}};
 }
 
 }  // namespace

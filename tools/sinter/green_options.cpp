@@ -90,10 +90,12 @@ void GreenOptions::add_to(CLI::App& app) {
 
 void GreenOptions::complete(const CLI::App& app) {
     const bool soft = packing.method == Method::soft;
+    if (packing.compact_to && app.count("--method") == 0) packing.method = Method::affine;
+    if (packing.compact_to && packing.method == Method::loose) refuse("--compact-to goes with --method affine or soft");
     if (!(packing.density > 0.0 && packing.density < (soft ? 1.0 : densest_loose)))
         refuse(soft ? "--density: a relative density lies between 0 and 1"
                     : "--density: spheres that do not overlap have a relative density between 0 and 0.74");
-    if (packing.method == Method::affine && !packing.compact_to) refuse("--method affine needs --compact-to");
+    if (packing.method == Method::affine && !packing.compact_to) refuse("--method affine requires --compact-to");
     if (packing.compact_to && !(*packing.compact_to >= packing.density && *packing.compact_to < 1.0))
         refuse("--compact-to: the relative density is not between --density and 1");
     if (soft ? app.count("--swell") > 0 : app.count("--mean-overlap") > 0)
