@@ -58,7 +58,7 @@ Window parse_window(const std::string& text) {
     const auto upper = fraction_of(std::string_view(text).substr(0, colon));
     const auto lower = colon == std::string::npos ? std::nullopt : fraction_of(std::string_view(text).substr(colon + 1));
     if (!upper || !lower || !(*upper <= 1.0 && *upper > *lower && *lower >= 0.0))
-        throw TextError("is '" + text + "', wanted UPPER:LOWER with 1 >= UPPER > LOWER >= 0, such as 5/6:1/3");
+        throw TextError("is '" + text + "', expected UPPER:LOWER with 1 >= UPPER > LOWER >= 0, such as 5/6:1/3");
     return {*upper, *lower};
 }
 

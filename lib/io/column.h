@@ -27,10 +27,10 @@ std::vector<Value> values_of(Array&& array, const std::string& where, std::size_
     auto* values = std::get_if<std::vector<Value>>(&array.data);
     if (!values) {
         const Array wanted{{}, std::vector<Value>()};
-        throw Error(where + " has type " + type_name(array) + ", wanted " + type_name(wanted));
+        throw Error(where + " has type " + type_name(array) + ", expected " + type_name(wanted));
     }
     const std::vector<std::size_t> shape = width == 1 ? std::vector<std::size_t>{rows} : std::vector<std::size_t>{rows, width};
-    if (array.shape != shape) throw Error(where + " has shape " + shape_text(array.shape) + ", wanted " + shape_text(shape));
+    if (array.shape != shape) throw Error(where + " has shape " + shape_text(array.shape) + ", expected " + shape_text(shape));
     if constexpr (std::is_floating_point_v<Value>) require_finite(*values, where, width);
     return std::move(*values);
 }

@@ -72,7 +72,7 @@ Value value_from(const Json& item, const std::string& where, std::size_t index) 
 void read_text_data(Array& array, const Json& data, const std::string& where) {
     const std::size_t wanted = value_count(array.shape);
     if (!data.is_array() || data.size() != wanted)
-        fail(where, "has " + std::to_string(data.is_array() ? data.size() : 0) + " values of data where its shape wants " +
+        fail(where, "has " + std::to_string(data.is_array() ? data.size() : 0) + " values of data where its shape requires " +
                         std::to_string(wanted));
     std::visit(
         [&](auto& values) {
@@ -189,7 +189,7 @@ bool DocumentReader::find_document() {
 
 Json DocumentReader::read_header(const std::string& place) {
     const int first = std::getc(file_);  // looked at before a line is read: what is no stream at all may hold no line end either
-    if (first != '{') fail(place, "begins with byte " + std::to_string(first) + ", wanted '{', the beginning of a JSON object");
+    if (first != '{') fail(place, "begins with byte " + std::to_string(first) + ", expected '{', the beginning of a JSON object");
     std::ungetc(first, file_);
     char* text = nullptr;
     std::size_t capacity = 0;

@@ -89,7 +89,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     std::string_view name = text.substr(static_cast<std::size_t>(end - text.data()));
     while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
     if (dimension == Dimension::none) {
-        if (!name.empty()) throw TextError(given + " has a unit where a plain number is wanted");
+        if (!name.empty()) throw TextError(given + " has a unit where a plain number is required");
         return number;
     }
     for (const Unit& unit : units)

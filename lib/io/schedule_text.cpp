@@ -23,7 +23,7 @@ std::optional<double> quantity(const std::string& word, Dimension dimension) {
 
 [[noreturn]] void refuse(const std::string& word, const std::string& wanted) {
     throw TextError((word.empty() ? "it ends" : "'" + word + "' stands") + " where " + wanted +
-                    " is wanted, as in \"25C 10K/min 1200C 1h 10K/min 25C\"");
+                    " is required, as in \"25C 10K/min 1200C 1h 10K/min 25C\"");
 }
 
 }  // namespace

@@ -64,11 +64,11 @@ Box box_from(const Json& header, const std::string& place) {
 
 void check_kind(const Json& header, const std::string& place) {
     if (const Json format = header.value("format", Json("dem-state")); format != "dem-state")
-        throw Error(place + ": is " + shown(format) + ", wanted dem-state");
+        throw Error(place + ": is " + shown(format) + ", expected dem-state");
     if (const Json version = header.value("version", Json(format_version)); version != format_version)
         throw Error(place + ": has version " + shown(version) + ", this program knows version " + std::to_string(format_version));
     if (const Json units = header.value("units", Json("SI")); units != "SI")
-        throw Error(place + ": has units " + shown(units) + ", wanted \"SI\"");
+        throw Error(place + ": has units " + shown(units) + ", expected \"SI\"");
 }
 
 void check_ids(const std::vector<std::int64_t>& ids, const std::string& where) {
@@ -113,7 +113,7 @@ Particles particles_from(std::vector<NamedArray> arrays, std::size_t materials, 
             throw Error(place + ": particle " + std::to_string(particles.id[row]) + " (row " + std::to_string(row) + ") has " +
                         cause);
         };
-        if (!(particles.radius[row] > 0.0)) refuse("radius " + shown(particles.radius[row]) + ", wanted a positive one");
+        if (!(particles.radius[row] > 0.0)) refuse("radius " + shown(particles.radius[row]) + ", expected a positive one");
         if (particles.material[row] < 0 || static_cast<std::size_t>(particles.material[row]) >= materials)
             refuse("material " + std::to_string(particles.material[row]) + ", there are " + std::to_string(materials));
     }
@@ -147,7 +147,7 @@ Bonds bonds_from(std::vector<NamedArray> arrays, std::size_t particles, const st
                 refuse("particle row " + std::to_string(particle) + ", there are " + std::to_string(particles));
         if (bonds.pair[row][0] == bonds.pair[row][1] && bonds.image[row] == Image{0, 0, 0})
             refuse("particle row " + std::to_string(bonds.pair[row][0]) + " at both ends");
-        if (bonds.radius[row] < 0.0) refuse("radius " + shown(bonds.radius[row]) + ", wanted none below zero");
+        if (bonds.radius[row] < 0.0) refuse("radius " + shown(bonds.radius[row]) + ", expected none below zero");
         if (default_volume)
             bonds.volume.push_back(std::numbers::pi * bonds.radius[row] * bonds.radius[row] * std::max(0.0, bonds.length[row]));
     }

@@ -65,7 +65,7 @@ void check_array(const Array& array, const Json& others, const std::string& name
     if (others.contains(name)) throw Error(where + " stands twice");
     const std::size_t values = std::visit([](const auto& data) { return data.size(); }, array.data);
     if (array.shape.empty() || array.rows() * array.row_length() != values)
-        throw Error(where + " has " + std::to_string(values) + " values where its shape wants " +
+        throw Error(where + " has " + std::to_string(values) + " values where its shape requires " +
                     std::to_string(array.rows() * array.row_length()));
 }
 

@@ -67,7 +67,7 @@ void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) 
     const std::string when = (relaxation.jammed ? "jammed after " : "after ") + steps;
     if (options.method == Method::soft)
         throw Error("relative density " + rounded(options.density) + ": " + when + " the mean overlap is " +
-                    rounded(relaxation.mean_overlap) + " of the radii, above the wanted " + rounded(options.mean_overlap));
+                    rounded(relaxation.mean_overlap) + " of the radii, above the required " + rounded(options.mean_overlap));
     // Lengths larger by 1/(1 - largest overlap ratio) would part all spheres.
     const double reached = options.density * std::pow(1.0 - relaxation.largest_overlap, 3);
     throw Error("relative density " + rounded(options.density) + ": " + when + " spheres still overlap by up to " +

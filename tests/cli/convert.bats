@@ -155,7 +155,7 @@ END
     run -0 bash -c '"$CONVERT" musen.txt - | "$ANALYZE" density'
     printf '0 0 1 1 5 5e-08 5e-08 2 0 12 1 2\n' >short.txt
     run -1 "$CONVERT" short.txt -
-    assert_output "dem-convert: short.txt, line 1: the command 12 wants 3 values, 2 are there"
+    assert_output "dem-convert: short.txt, line 1: the command 12 requires 3 values, 2 are there"
 }
 
 @test "VTU: meshio and VTK read the series, its spheres, bonds and arrays" {

@@ -21,7 +21,7 @@ last() { "$ANALYZE" info "$1" | tail -1 | jq ".last_step.summary$2"; }
 
 @test "a schedule too cold for a wanted density is a warning and status 3, with what was reached written" {
     run -3 --separate-stderr "$SINTER" --schedule "25C 10K/min 1100C 10K/min 25C" --to-density 0.501,0.9 -o fired.kiln green.kiln
-    assert_regex "$stderr" "the schedule ends at a relative density of 0\.[0-9]+, short of the wanted 0.9"
+    assert_regex "$stderr" "the schedule ends at a relative density of 0\.[0-9]+, short of the required 0.9"
     run -0 jq -se 'length == 2 and (.[0].relative_density - 0.501 | fabs) < 1e-6 and .[1].temperature == 298.15' <("$ANALYZE" info fired.kiln)
 }
 

@@ -129,9 +129,9 @@ load stream_support.bash
         done
     done <<'TABLE'
 version-unknown	has version 2, this program knows version 1
-units	has units "cgs", wanted "SI"
+units	has units "cgs", expected "SI"
 binary-position-nan	particles.position, row 1: is not a finite number
 binary-radius-infinite	particles.radius, row 1: is not a finite number
-radius-zero	particle 1 \(row 1\) has radius 0.0, wanted a positive one
+radius-zero	particle 1 \(row 1\) has radius 0.0, expected a positive one
 TABLE
 }

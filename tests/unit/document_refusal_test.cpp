@@ -44,9 +44,9 @@ TEST_CASE("a stream that holds no document is at its end") {
 }
 
 TEST_CASE("what is no line of JSON is refused, with the place") {
-    CHECK(refusal("hello") == "stream, document 1: begins with byte 104, wanted '{', the beginning of a JSON object");
-    CHECK(refusal("[1]\n") == "stream, document 1: begins with byte 91, wanted '{', the beginning of a JSON object");
-    CHECK(refusal("\xef\xbb\xbf{}\n") == "stream, document 1: begins with byte 239, wanted '{', the beginning of a JSON object");
+    CHECK(refusal("hello") == "stream, document 1: begins with byte 104, expected '{', the beginning of a JSON object");
+    CHECK(refusal("[1]\n") == "stream, document 1: begins with byte 91, expected '{', the beginning of a JSON object");
+    CHECK(refusal("\xef\xbb\xbf{}\n") == "stream, document 1: begins with byte 239, expected '{', the beginning of a JSON object");
     CHECK(refusal("{}\n{}\n{\"a\":}\n") == "stream, document 3: is not a line of JSON (byte 6)");
     CHECK(refusal("{} {}\n") == "stream, document 1: is not a line of JSON (byte 4)");
     CHECK(refusal("{\"a\":NaN}\n") == "stream, document 1: is not a line of JSON (byte 6)");
@@ -120,9 +120,9 @@ TEST_CASE("text data that does not fit shape or type is refused, with the value"
         return refusal(with_array(R"({"type":")" + type + R"(","shape":[2],"data":)" + text + "}"));
     };
     const std::string place = "stream, document 1: particles.x: ";
-    CHECK(data("f8", "[1]") == place + "has 1 values of data where its shape wants 2");
-    CHECK(data("f8", "[1,2,3]") == place + "has 3 values of data where its shape wants 2");
-    CHECK(data("f8", "5") == place + "has 0 values of data where its shape wants 2");
+    CHECK(data("f8", "[1]") == place + "has 1 values of data where its shape requires 2");
+    CHECK(data("f8", "[1,2,3]") == place + "has 3 values of data where its shape requires 2");
+    CHECK(data("f8", "5") == place + "has 0 values of data where its shape requires 2");
     CHECK(data("f8", "[1,null]") == place + "value 1 is null where a number is needed");
     CHECK(data("f8", "[\"nan\",1]") == place + "value 0 is \"nan\" where a number is needed");
     CHECK(data("f8", "[[1],2]") == place + "value 0 is [1] where a number is needed");
@@ -182,7 +182,7 @@ TEST_CASE("sizes that no file has take no memory, of a file or a pipe") {
     CHECK(refusal("{\"bytes\":18446744073709551615}\n123") ==
           "stream, document 1: is truncated: 18446744073709551615 bytes belong behind its header, 3 are there");
     CHECK(refusal(with_array(R"({"type":"i8","shape":[2000000000,500000000],"data":[1]})")) ==
-          "stream, document 1: particles.x: has 1 values of data where its shape wants 1000000000000000000");
+          "stream, document 1: particles.x: has 1 values of data where its shape requires 1000000000000000000");
     CHECK(peak_memory() - before < std::size_t{64} << 20);
 }
 

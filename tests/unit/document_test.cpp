@@ -203,7 +203,7 @@ TEST_CASE("what would make a stream that nobody can read is not written") {
     document.particles.push_back(document.particles[0]);
     CHECK(refusal(document, false) == "stream: particles.stress stands twice");
     document.particles = {array("stress", {3, 2}, std::vector<float>(5))};
-    CHECK(refusal(document, false) == "stream: particles.stress has 5 values where its shape wants 6");
+    CHECK(refusal(document, false) == "stream: particles.stress has 5 values where its shape requires 6");
 }
 
 TEST_CASE("names that are no UTF-8, such as those of files, do not stop the writer") {

@@ -44,10 +44,10 @@ TEST_CASE("what cannot be read is said with its name") {
               io::Input input({folder / "bad"});
               input.next();
               input.next();
-          }) == folder / "bad, document 2: begins with byte 120, wanted '{', the beginning of a JSON object");
+          }) == folder / "bad, document 2: begins with byte 120, expected '{', the beginning of a JSON object");
     put(folder / "result", R"({"format":"dem-bend"})");
     CHECK(sentence_of([&] { io::Input({folder / "result"}).next_state(); }) ==
-          folder / "result, document 1: is \"dem-bend\", wanted dem-state");
+          folder / "result, document 1: is \"dem-bend\", expected dem-state");
 }
 
 TEST_CASE("nothing stands under the final name before commit, and nothing at all without it") {

@@ -240,7 +240,7 @@ TEST_CASE("green: a density that cannot be reached says which can") {
     CHECK_THROWS_WITH_AS(packed(options), doctest::Contains("can be reached"), Error);
     options.method = Method::soft;
     options.mean_overlap = 0.001;
-    CHECK_THROWS_WITH_AS(packed(options), doctest::Contains("above the wanted 0.001"), Error);
+    CHECK_THROWS_WITH_AS(packed(options), doctest::Contains("above the required 0.001"), Error);
 }
 
 TEST_CASE("green: the same body for any number of threads, another for another seed") {

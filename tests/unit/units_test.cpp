@@ -116,8 +116,8 @@ TEST_CASE("a unit of another kind or another case is refused") {
     CHECK(refusal("0x10m", Dimension::length) == "'0x10m'" + wrong + "m, cm, mm, um, nm");
     CHECK(refusal("1,5nm", Dimension::length) == "'1,5nm'" + wrong + "m, cm, mm, um, nm");
     CHECK(refusal("5\tnm", Dimension::length) == "'5\tnm'" + wrong + "m, cm, mm, um, nm");
-    CHECK(refusal("5nm", Dimension::none) == "'5nm' has a unit where a plain number is wanted");
-    CHECK(refusal("0x10", Dimension::none) == "'0x10' has a unit where a plain number is wanted");
+    CHECK(refusal("5nm", Dimension::none) == "'5nm' has a unit where a plain number is required");
+    CHECK(refusal("0x10", Dimension::none) == "'0x10' has a unit where a plain number is required");
 }
 
 TEST_CASE("what is no finite number is refused") {

@@ -34,9 +34,9 @@ void add_table_points(Points& points, const std::string& file) {
     for (std::size_t row = 0; row < modulus.size(); ++row) {
         const std::string place = file + ", row " + std::to_string(row + 1);
         if (!((*porosity)[row] >= 0.0 && (*porosity)[row] < 1.0))
-            throw Error(place + ": the porosity is " + Json((*porosity)[row]).dump() + ", wanted 0 or more and less than 1");
+            throw Error(place + ": the porosity is " + Json((*porosity)[row]).dump() + ", expected 0 or more and less than 1");
         if (!(modulus[row] > 0.0))
-            throw Error(place + ": the modulus is " + Json(modulus[row]).dump() + " Pa, wanted a positive number");
+            throw Error(place + ": the modulus is " + Json(modulus[row]).dump() + " Pa, expected a positive number");
         if (error && (*error)[row] < 0.0) throw Error(place + ": the standard error is negative");
         points.porosity.push_back((*porosity)[row]);
         points.modulus.push_back(modulus[row]);

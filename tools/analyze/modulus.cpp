@@ -132,7 +132,7 @@ std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const 
     }
     if (force.size() < 2)
         throw Error(place + ": the last unloading has " + std::to_string(force.size()) +
-                    " points in the window of forces, wanted two or more; give a wider --window");
+                    " points in the window of forces, expected two or more; give a wider --window");
     const analysis::Line line = analysis::fit_line(deflection, force);
     if (!(line.slope > 0.0) || !std::isfinite(line.slope))
         throw Error(place + ": the force does not grow with the deflection in the last unloading" +

@@ -30,7 +30,7 @@ double number_at(const io::Document& document, const std::string& key, double lo
 
 double positive_at(const io::Document& document, const std::string& key) {
     const double number = number_at(document, key, 0.0);
-    if (number == 0.0) throw Error(document.place + ": " + key + " is zero, wanted a positive number");
+    if (number == 0.0) throw Error(document.place + ": " + key + " is zero, expected a positive number");
     return number;
 }
 

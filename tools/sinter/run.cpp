@@ -90,7 +90,7 @@ class Sintered {
         } else if (wanted_.densities_left()) {
             progressed_.converged = false;
             sinks_.warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() +
-                        ", short of the wanted " + Json(wanted_.next_density()).dump());
+                        ", short of the required " + Json(wanted_.next_density()).dump());
         }
         return true;
     }

@@ -25,10 +25,10 @@ Wanted::Wanted(const Options& options, double density, double time)
     std::sort(densities_.begin(), densities_.end());
     std::sort(times_.begin(), times_.end());
     if (!densities_.empty() && densities_.front() <= density)
-        throw Error("the density " + Json(densities_.front()).dump() + " is wanted, the state has " + Json(density).dump() +
+        throw Error("the density " + Json(densities_.front()).dump() + " is asked for, the state has " + Json(density).dump() +
                     " already");
     if (!times_.empty() && times_.front() < time)
-        throw Error("the time " + Json(times_.front()).dump() + " s is wanted, the state is at " + Json(time).dump() +
+        throw Error("the time " + Json(times_.front()).dump() + " s is asked for, the state is at " + Json(time).dump() +
                     " s already");
     if (densities_.empty() && times_.empty()) times_.push_back(end_);
     last_density_ = densities_.empty() ? density : densities_.back();

@@ -212,7 +212,7 @@ def frames(path):
                 name = key
                 items[name] = (words[len(key.split()):], [], row)
             elif name is None:
-                raise ConvertError(f"{path}, line {row}: is no dump, 'ITEM:' was wanted")
+                raise ConvertError(f"{path}, line {row}: is no dump, expected 'ITEM:'")
             else:
                 items[name][1].append(line.split())
         if items:
@@ -230,7 +230,7 @@ def table_of(items, kind, path, place):
         raise ConvertError(f"{place}: {count} {kind.lower()} are announced, {len(rows)} are there")
     for row, words in enumerate(rows, start=first + 1):
         if len(words) != len(names):
-            raise ConvertError(f"{path}, line {row}: has {len(words)} columns, wanted {len(names)}")
+            raise ConvertError(f"{path}, line {row}: has {len(words)} columns, expected {len(names)}")
     columns = {}
     for k, name in enumerate(names):
         try:

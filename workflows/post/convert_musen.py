@@ -44,7 +44,7 @@ def object_of(words, place):
             raise ConvertError(f"{place}: the command {command} is not known")
         values = words[at + 1:at + 1 + count]
         if len(values) < count:
-            raise ConvertError(f"{place}: the command {command} wants {count} values, {len(values)} are there")
+            raise ConvertError(f"{place}: the command {command} requires {count} values, {len(values)} are there")
         if command == TIME:
             current = times.setdefault(number(values[0], place), {})
         else:

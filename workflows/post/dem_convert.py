@@ -52,7 +52,7 @@ def read_dem(path, given):
     with opened(path, "rb") as stream:
         for number, document in enumerate(dem_state.read(stream), start=1):
             if document.get("format", "dem-state") != "dem-state":
-                raise ConvertError(f"{path}, document {number}: is {document['format']}, a state is wanted")
+                raise ConvertError(f"{path}, document {number}: is {document['format']}, expected a state")
             yield document
 
 
