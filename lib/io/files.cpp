@@ -89,7 +89,7 @@ Output::Output(std::string name, bool text, std::optional<Resumption> resumption
     const bool exists = stat(name_.c_str(), &status) == 0;
     if (!exists && errno != ENOENT) fail();
     if (exists && !S_ISREG(status.st_mode)) {  // a device or a pipe has no whole to wait for
-        if (resumption) throw Error(name_ + ": is no regular file, so no run can be taken up in it");
+        if (resumption) throw Error(name_ + ": is no regular file, so no run can be resumed in it");
         file_ = std::fopen(name_.c_str(), "wbe");
         if (!file_) fail();
         return;
@@ -122,8 +122,8 @@ void Output::open_partial(const Resumption& resumption) {
     if (!file_ && resumption.take_up && errno == ENOENT && resumption.bytes == 0) file_ = std::fopen(partial_.c_str(), "wbxe");
     const std::string partial = file_ ? partial_ : std::exchange(partial_, std::string());
     if (!file_ && errno == EEXIST)
-        throw Error(partial + ": is there already; a run is writing it, or --resume takes up the one that did");
-    if (!file_ && errno == ENOENT && resumption.take_up) throw Error(partial + ": is gone, so the run cannot be taken up");
+        throw Error(partial + ": is there already; a run is writing it, or --resume resumes the one that did");
+    if (!file_ && errno == ENOENT && resumption.take_up) throw Error(partial + ": is gone, so the run cannot be resumed");
     if (!file_) fail();
     struct stat status {};
     if (fstat(fileno(file_), &status) != 0 || static_cast<std::uint64_t>(status.st_size) < resumption.bytes)

@@ -44,7 +44,7 @@ class Input {
     std::unique_ptr<DocumentReader> reader_;
 };
 
-/// For a run that may be broken off and taken up again: the file being written is NAME.partial and stays where the run breaks off.
+/// For a run that may be interrupted and resumed: the file being written is NAME.partial and stays where the run is interrupted.
 struct Resumption {
     bool take_up = false;     // an earlier run's partial file, if it is there
     std::uint64_t bytes = 0;  // that are kept of it
@@ -71,7 +71,7 @@ class Output {
     void write_text(const std::string& text);
 
     /// Hands everything to the system and gives the number of bytes in the file so far. From then on the partial file of a run that
-    /// may be taken up stays where it breaks off.
+    /// may be resumed stays where it is interrupted.
     std::uint64_t flushed_bytes();
 
     /// Flushes, checks, and gives the file its final name. Throws Error on a full disk, ClosedPipe on a closed pipe.
@@ -86,7 +86,7 @@ class Output {
     std::string final_;    // the regular file that it leads to; empty for a device, a pipe or standard output
     std::string partial_;  // the file being written, until it has its final name
     bool text_;
-    bool keep_ = false;    // the partial file, where the run breaks off
+    bool keep_ = false;    // the partial file, where the run is interrupted
     std::FILE* file_ = nullptr;
 };
 

@@ -67,7 +67,7 @@ assert_only() {
     done
 }
 
-@test "a disk that fills up under a checkpoint is one sentence; once there is room the run is taken up and ends in the same bytes" {
+@test "a disk that fills up under a checkpoint is one sentence; once there is room the run is resumed and ends in the same bytes" {
     resumable() { "$SINTER" -q --temperature 1200C --to-density 0.6 --checkpoint run --checkpoint-every 0s --resume -o out "$SHARED/sinter.in"; }
     limited() { (ulimit -f 8 && resumable); }
     run -1 --separate-stderr limited

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# sinter.bats: the command line of sinter: schedules, boundaries, methods, and runs that are broken off and taken up again.
+# sinter.bats: the command line of sinter: schedules, boundaries, methods, and runs that are interrupted and resumed.
 bats_require_minimum_version 1.5.0
 load helper
 
@@ -74,7 +74,7 @@ last() { "$ANALYZE" info "$1" | tail -1 | jq ".last_step.summary$2"; }
 END
 }
 
-@test "killed at any moment and taken up again, a run ends in the same bytes, outputs and history" {
+@test "killed at any moment and resumed, a run ends in the same bytes, outputs and history" {
     "$SINTER" green -n 1500 --density 0.43 --seed 5 | cat - green.kiln >two.kiln
     options=(--temperature 1200C --to-density 0.55,0.6,0.7,0.8)
     "$SINTER" "${options[@]}" --history whole.jsonl -o whole.kiln two.kiln
@@ -95,7 +95,7 @@ END
     assert_output 0
 }
 
-@test "a checkpoint that was broken off while it was written is written over, and gone in the end" {
+@test "a checkpoint that was interrupted while it was written is written over, and gone in the end" {
     echo "half a checkpoint" >run.kiln.partial
     "$SINTER" --temperature 1200C --to-density 0.6 --checkpoint run.kiln --checkpoint-every 0s --resume -o out.kiln green.kiln
     run -0 bash -c 'echo run.kiln*'

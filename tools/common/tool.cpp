@@ -26,7 +26,7 @@ volatile std::sig_atomic_t signal_seen = 0;
 
 void note_signal(int signal) { signal_seen = signal; }
 
-/// The first signal asks long loops to end and breaks off a wait for input; a second one ends the program at once.
+/// The first signal asks long loops to end and interrupts a wait for input; a second one ends the program at once.
 void watch_signals() {
     struct sigaction action {};
     action.sa_handler = note_signal;

@@ -65,7 +65,7 @@ void Checkpoint::write(State state, Progressed progressed) {
                         {"conjugate_gradients", progressed.conjugate_gradients},
                         {"converged", progressed.converged},
                         {"finished", progressed.finished}};
-    io::Output output(file_, false, io::Resumption{.take_up = true});  // a checkpoint that kill -9 broke off is written over
+    io::Output output(file_, false, io::Resumption{.take_up = true});  // a checkpoint that kill -9 interrupted is written over
     output.write(std::move(state));
     output.commit();
     last_ = Clock::now();

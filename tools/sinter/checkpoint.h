@@ -1,4 +1,4 @@
-// checkpoint.h: files that a broken-off run is taken up from.
+// checkpoint.h: files from which an interrupted run is resumed.
 #pragma once
 
 #include <chrono>

@@ -168,7 +168,7 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
         if (whole && (sinks.checkpoint.wanted() || !cli::stop_requested())) continue;
         if (!sinks.checkpoint.wanted()) break;
         sinks.progress.clear();
-        sinks.warn("stopped; --resume goes on from the checkpoint");
+        sinks.warn("interrupted; --resume resumes from the checkpoint");
         return cli::interrupted;
     }
     sinks.progress.clear();
