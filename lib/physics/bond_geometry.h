@@ -22,7 +22,7 @@ double cap_volume(double radius, double circle_radius);
 double bond_volume(double distance, double radius1, double radius2, double bond_radius, BondVolume kind);
 
 /// Radius of the bond of the given volume (m3), m: the root of bond_volume(Rb) = volume in [0, min(R1, R2)], or min(R1, R2) for a
-/// volume too large to find room. The spheres (lengths in m) do not overlap but for rounding.
+/// volume too large to fit. The spheres (lengths in m) do not overlap but for rounding.
 double bond_radius(double volume, double distance, double radius1, double radius2, BondVolume kind);
 
 }  // namespace kiln::physics

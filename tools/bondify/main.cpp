@@ -22,7 +22,7 @@ void report(const bonding::Summary& summary, const bonding::Options& options, st
     if (summary.pairs == 0) warn("no particles overlap, so there are no bonds");
     if (summary.clamped > 0)
         warn(summary.clamped, " of ", summary.pairs, " bonds are clamped to the radius of their smaller particle; a volume of ",
-             summary.lost_volume, " m3 finds no room in them");
+             summary.lost_volume, " m3 does not fit into them");
     if (summary.stopped > 0)
         warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::smallest_share, " % of their radius");
     if (options.drop_thin && summary.thin > 0)
