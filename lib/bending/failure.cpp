@@ -20,7 +20,7 @@ constexpr int max_trials = 100;
 constexpr double narrowest = 1e-12;        // bracket of the force at which a bond breaks, over that force
 constexpr double work_tolerance = 2e-5;    // of the work between two breaks, over the most energy that was stored
 constexpr double tenth = 0.1;
-constexpr int max_halvings = 24;          // of the steps of force between two breaks
+constexpr int max_halvings = 200;         // of the steps of force between two breaks
 constexpr std::size_t max_breaks = 100000;
 
 struct Weakest {
