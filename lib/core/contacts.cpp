@@ -11,7 +11,8 @@ ContactStatistics contact_statistics(const Box& box, const Particles& particles,
     for (const Pair& pair : pairs) {
         const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
         const double radii = particles.radius[i] + particles.radius[j];
-        const double overlap = radii - pair_vector(box, particles.position, pair).norm();
+        const double overlap =
+            contact_overlap(particles.radius[i], particles.radius[j], pair_vector(box, particles.position, pair).norm());
         if (overlap < 0.0) continue;
         ++contacts;
         sum += overlap / radii;

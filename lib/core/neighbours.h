@@ -1,6 +1,7 @@
 // neighbours.h: the only neighbour search, a hierarchy of periodic cell grids that is O(N) for any mix of sizes.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,14 @@ std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std
 /// Vector from i to the image of j, m.
 inline Vec3 pair_vector(const Box& box, std::span<const Vec3> position, const Pair& pair) {
     return position[static_cast<std::size_t>(pair.j)] + box.shift(pair.image) - position[static_cast<std::size_t>(pair.i)];
+}
+
+/// Overlap of two spheres, m, negative for a gap. A gap within the rounding of centres, 1e-9 of the smaller radius, is none: spheres
+/// that were placed to touch do.
+inline double contact_overlap(double first, double second, double distance) {
+    constexpr double touching_gap = 1e-9;
+    const double overlap = first + second - distance;
+    return overlap < 0.0 && overlap > -touching_gap * std::min(first, second) ? 0.0 : overlap;
 }
 
 }  // namespace kiln

@@ -35,6 +35,29 @@ inline double normal_viscosity_factor(const ContactConstants& c, double reduced)
     return std::numbers::pi * 16.0 * reduced * reduced / (2.0 * c.beta);
 }
 
+/// How the normal viscosity grows with the overlap: h^2, m2. With its integral and the inverse of that below, the only place
+/// where the power of h stands.
+inline double viscosity_shape(double overlap) { return overlap > 0.0 ? overlap * overlap : 0.0; }
+
+/// Integral of viscosity_shape from one overlap to another, m3; K/Delta times it is the force times the time in which that alone
+/// is overcome. Overlaps below zero count as zero.
+inline double viscosity_integral(double from, double until) {
+    const double a = from > 0.0 ? from : 0.0, b = until > 0.0 ? until : 0.0;
+    return (b * b * b - a * a * a) / 3.0;
+}
+
+/// Mean of viscosity_shape between two overlaps, m2: the secant of its integral, finite where both are the same.
+inline double mean_viscosity_shape(double one, double other) {
+    const double a = one > 0.0 ? one : 0.0, b = other > 0.0 ? other : 0.0;
+    return (a * a + a * b + b * b) / 3.0;
+}
+
+/// The overlap up to which viscosity_integral from `from` is `integral` (m3), m. Never below zero.
+inline double overlap_of_integral(double from, double integral) {
+    const double a = from > 0.0 ? from : 0.0, cube = a * a * a + 3.0 * integral;
+    return cube > 0.0 ? std::cbrt(cube) : 0.0;
+}
+
 /// Tangential viscosity times Delta, eta pi a^2 (2 R*)^2/(2 beta), m4.
 inline double tangential_viscosity(const ContactConstants& c, double overlap, double reduced) {
     return c.eta * std::numbers::pi * contact_radius_squared(overlap, reduced) * 4.0 * reduced * reduced / (2.0 * c.beta);
@@ -43,9 +66,7 @@ inline double tangential_viscosity(const ContactConstants& c, double overlap, do
 /// Overlap of an isolated pair after integral(Delta dt) = diffusion (m5/N) under the closing force (N): the exact solution
 /// h^3 = h0^3 + 3 force diffusion/K of Eq. 1, m. Never below zero.
 inline double pair_overlap(double overlap, double force, double diffusion, double viscosity_factor) {
-    const double start = overlap > 0.0 ? overlap : 0.0;
-    const double cube = start * start * start + 3.0 * force * diffusion / viscosity_factor;
-    return cube > 0.0 ? std::cbrt(cube) : 0.0;
+    return overlap_of_integral(overlap, force * diffusion / viscosity_factor);
 }
 
 }  // namespace kiln::physics

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 
 namespace kiln::sintering {
 
@@ -18,7 +19,7 @@ constexpr double harmless_overlap = 0.05;  // of the mean closing of contacts in
 
 double Candidates::overlap(const Pair& pair) const {
     const auto [first, second] = body_.radii(pair);
-    return first + second - body_.vector(pair).norm();
+    return contact_overlap(first, second, body_.vector(pair).norm());
 }
 
 double Candidates::end_overlap(const Pair& pair, const Motion& motion) const {
@@ -35,7 +36,7 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
     PairStep step{};
     step.vector = step.lever = body_.vector(pair);
     step.distance = step.vector.norm();
-    step.overlap = first + second - step.distance;
+    step.overlap = contact_overlap(first, second, step.distance);
     step.reduced_radius = physics::reduced_radius(first, second);
     if (kinetics_.rigid(kind)) {
         step.limit = std::max(0.0, -step.overlap);
@@ -43,13 +44,28 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
     }
     const double most = physics::overlap_of_neck(kinetics_.neck_limit(kind) * std::min(first, second), step.reduced_radius);
     step.limit = std::max(0.0, most - step.overlap);
+    step.slowness = *std::ranges::max_element(diffusion) / diffusion[kind];
     step.force = unit * physics::sintering_force(constants_, step.reduced_radius, kinetics_.surface_energy(kind));
     step.cubic = unit * physics::normal_viscosity_factor(constants_, step.reduced_radius) / diffusion[kind];
     step.shear = unit * physics::tangential_viscosity(constants_, 1.0, step.reduced_radius) / diffusion[kind];
     return step;
 }
 
-void Candidates::choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion) {
+double Candidates::max_isolated_approach(const std::vector<double>& diffusion) const {
+    double most = 0.0;
+    for (const Pair& pair : body_.pairs()) {
+        const double start = overlap(pair);
+        const std::size_t kind = kinetics_.row(body_.particles(), pair);
+        if (start < 0.0 || kinetics_.rigid(kind)) continue;
+        const PairStep step = pair_step(pair, diffusion, 1.0);
+        // w K h^2 and w^3 K/3 are both at most the driving force over the step's diffusion.
+        const double cube = 3.0 * step.force / step.cubic;
+        most = std::max(most, start > 0.0 ? std::min(cube / (3.0 * start * start), std::cbrt(cube)) : std::cbrt(cube));
+    }
+    return most / body_.mean_radius();
+}
+
+void Candidates::choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion, bool keep) {
     // Forces in a unit that makes stiffness a plain number near one, whatever the sizes, times and temperatures.
     const double radius = body_.mean_radius();
     unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
@@ -60,18 +76,21 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
         return &guess == &other ? end_overlap(pair, guess) : std::max(end_overlap(pair, guess), end_overlap(pair, other));
     };
     const std::vector<Pair>& list = body_.pairs();
+    const std::vector<Pair> before = keep ? std::move(chosen_) : std::vector<Pair>{};
+    const auto order = [](const Pair& a, const Pair& b) { return std::tie(a.i, a.j, a.image) < std::tie(b.i, b.j, b.image); };
     std::vector<std::uint8_t> kind(list.size());  // 0 out, 1 apart, 2 touching, 3 sticking
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < list.size(); ++row) {
+    for_rows(list.size(), [&](std::size_t row) {
         const Pair& pair = list[row];
         const double start = overlap(pair);
         if (sticks(body_, kinetics_, pair))
             kind[row] = 3;
         else if (start >= 0.0)
             kind[row] = 2;
+        else if (keep && std::binary_search(before.begin(), before.end(), pair, order))
+            kind[row] = 1;
         else if (start + reach > 0.0 || start + guess_margin * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;
-    }
+    });
     for (auto* part : {&pairs_, &chosen_, &left_out_, &touching_, &sticking_}) part->clear();
     for (std::size_t row = 0; row < list.size(); ++row) {
         (kind[row] == 0 ? left_out_ : chosen_).push_back(list[row]);
@@ -80,15 +99,14 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
         (kind[row] == 3 ? sticking_ : pairs_).push_back(list[row]);
     }
     steps_.resize(pairs_.size());
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < pairs_.size(); ++row) steps_[row] = pair_step(pairs_[row], diffusion, unit_);
+    for_rows(pairs_.size(), [&](std::size_t row) { steps_[row] = pair_step(pairs_[row], diffusion, unit_); });
 }
 
 bool Candidates::complete(const Motion& motion) const {
     const double harmless = harmless_overlap * 2.0 * body_.mean_radius() * motion.strain.cwiseAbs().maxCoeff();
     const auto touching_among = [&](const std::vector<Pair>& pairs) {
         std::size_t count = 0;
-#pragma omp parallel for schedule(static) reduction(+ : count)
+#pragma omp parallel for schedule(static) reduction(+ : count) if (pairs.size() >= worth_threads)
         for (const Pair& pair : pairs) count += end_overlap(pair, motion) > harmless;
         return count;
     };
@@ -98,29 +116,17 @@ bool Candidates::complete(const Motion& motion) const {
 
 void Candidates::turn_to_nodes(const RigidClusters& clusters) {
     if (sticking_.empty()) return;
-    struct Row {
-        Pair pair;
-        PairStep step;
-    };
-    std::vector<Row> rows;
-    for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        bool turned = false;
-        const Pair seen = clusters.seen(pairs_[row], turned);
-        if (RigidClusters::inert(seen)) continue;
-        PairStep step = steps_[row];
-        if (turned) step.vector = -step.vector;
-        step.lever = pair_vector(body_.box(), clusters.places(), seen);
-        rows.push_back({seen, step});
+    std::vector<Pair> pairs;
+    std::vector<PairStep> steps;
+    for (const RigidClusters::NodePair& row : clusters.node_pairs(pairs_)) {
+        PairStep step = steps_[row.row];
+        if (row.reversed) step.vector = -step.vector;
+        step.lever = pair_vector(body_.box(), clusters.places(), row.pair);
+        pairs.push_back(row.pair);
+        steps.push_back(step);
     }
-    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-        return std::tie(a.pair.i, a.pair.j, a.pair.image) < std::tie(b.pair.i, b.pair.j, b.pair.image);
-    });
-    pairs_.clear();
-    steps_.clear();
-    for (const Row& row : rows) {
-        pairs_.push_back(row.pair);
-        steps_.push_back(row.step);
-    }
+    pairs_ = std::move(pairs);
+    steps_ = std::move(steps);
 }
 
 }  // namespace kiln::sintering

@@ -18,8 +18,9 @@ class Candidates {
         : body_(packing), kinetics_(kinetics), constants_(constants) {}
 
     /// Chooses from the packing's list by two motions that the step may turn out to make.
-    /// diffusion: integral of Delta over the step for each pair of materials, m5/N.
-    void choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion);
+    /// diffusion: integral of Delta over the step for each pair of materials, m5/N. keep: what was chosen last stays chosen, so that
+    /// choosing again and again comes to an end.
+    void choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion, bool keep = false);
 
     /// True if no pair of the packing's list that was not chosen touches after the motion, or so little that it may begin with the
     /// next step.
@@ -35,6 +36,8 @@ class Candidates {
     const std::vector<PairStep>& steps() const { return steps_; }        // a row a pair
     const std::vector<Pair>& touching() const { return touching_; }      // of particles
     const std::vector<Pair>& sticking() const { return sticking_; }      // of particles that do not diffuse, and touch
+    /// Bound of the approach over a step of any touching pair by the law of an isolated pair, over the mean radius.
+    double max_isolated_approach(const std::vector<double>& diffusion) const;
     double unit() const { return unit_; }                                // of the steps' forces: what 1 N is in it
 
    private:

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/neighbours.h"
+#include "core/parallel.h"
 
 namespace kiln::sintering {
 
@@ -42,21 +43,11 @@ class ContactNetwork {
 
     /// Calls work(chunk number) for each chunk, in parallel.
     template <typename Work>
-    void for_chunks(const Work& work) const {
-        const auto count = static_cast<std::int64_t>(chunks_.size());
-#pragma omp parallel for schedule(dynamic) if (count >= fewest_parallel)
-        for (std::int64_t index = 0; index < count; ++index) work(static_cast<std::size_t>(index));
-    }
+    void for_chunks(const Work& work) const { kiln::for_chunks(chunks_.size(), work, fewest_parallel); }
 
     /// Sum of value(chunk number) over the chunks, in their order.
     template <typename Value>
-    double sum_chunks(const Value& value) const {
-        std::vector<double> parts(chunks_.size());
-        for_chunks([&](std::size_t chunk) { parts[chunk] = value(chunk); });
-        double sum = 0.0;
-        for (const double part : parts) sum += part;
-        return sum;
-    }
+    double sum_chunks(const Value& value) const { return kiln::sum_chunks(chunks_.size(), 0.0, value, fewest_parallel); }
 
     /// forces = sum over contacts of force(entry, du): added to particle j, taken from i; forces.strain = sum of force * l.
     /// du is the relative motion of the contact. total is scratch space of 3N.
@@ -81,7 +72,7 @@ class ContactNetwork {
     bool owns_second(const Chunk& chunk, std::size_t entry) const { return owns(chunk, entry, own_second); }
 
    private:
-    static constexpr std::int64_t fewest_parallel = 5;  // chunks; below, threads wait for each other longer than they work
+    static constexpr std::size_t fewest_parallel = 5;  // chunks; below, threads wait for each other longer than they work
     static constexpr std::uint8_t own_first = 1, own_second = 2;
     bool owns(const Chunk& chunk, std::size_t entry, std::uint8_t which) const {
         return (side_[chunk.shift_begin + entry - chunk.crossing] & which) != 0;

@@ -19,7 +19,6 @@ constexpr int most_steps = 500;            // in a record
 constexpr int most_bisections = 100;
 constexpr double landing_accuracy = 1e-9;
 constexpr std::size_t chunk = 1024;        // particles whose sums are formed together; fixed, so that sums do not depend on threads
-constexpr std::size_t worth_threads = 8192;
 
 }  // namespace
 
@@ -69,14 +68,14 @@ ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, con
     const Vec3 vector = body_.vector(pair);
     const double distance = vector.norm();
     const auto [first, second] = body_.radii(pair);
-    const double overlap = first + second - distance;
+    const double overlap = contact_overlap(first, second, distance);
     PairForce result;
     if (overlap < 0.0) return result;
     const Vec3 normal = vector / distance;
     const Vec3 opening = velocity_[j] - velocity_[i] + strain_rate_.cwiseProduct(vector);
     const std::size_t kind = kinetics_.row(body_.particles(), pair);
     const double reduced = physics::reduced_radius(first, second);
-    result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * overlap * overlap / diffusion[kind];
+    result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * physics::viscosity_shape(overlap) / diffusion[kind];
     const double shear = physics::tangential_viscosity(settings_.constants, overlap, reduced) / diffusion[kind];
     const double along = normal.dot(opening);
     result.force =

@@ -24,6 +24,8 @@ constexpr double small_share = 1e-3;        // of the solver's tolerance
 constexpr double predictor_share = 20.0;    // of the solver's tolerance, for a first-order solution that only prepares the second
 constexpr double alone_share = 0.1;         // of it, for first-order steps, whose error falls with their length only slowly
 constexpr double harmless_share = 0.03;     // of the tolerance, change of density in a first-order step that needs no control
+constexpr double invisible_approach = 1e-20;  // of the mean radius; the rounding of a position is 1e-16 and more of it, and no
+                                              // force in a packing is thousands of times that of an isolated pair
 constexpr std::size_t most_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
@@ -35,9 +37,6 @@ constexpr int most_rejections = 20;         // of one step
 
 ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& settings)
     : SinteringMethod(std::move(state), settings), candidates_(body_, kinetics_, settings_.constants) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !body_.box().periodic[axis]))
-            throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
     next_duration_ = first_duration();
 }
 
@@ -97,7 +96,7 @@ void ImplicitSintering::Problem::take(const SinteringBody& packing, Candidates& 
 
 void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
     Motion& motion = second ? trial.motion : trial.first_order;
-    for (;;) {  // until no pair that comes to touch was left out
+    for (;;) {  // until no pair that comes to touch was left out; ends, since what is chosen only grows
         Motion nodes = problem.clusters.nodes(motion);
         project(nodes, problem.settings.allowed_strain);
         trial.report = second ? problem.step->second_order(problem.clusters.nodes(trial.first_order), nodes)
@@ -105,12 +104,12 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
         trial.converged = trial.converged && trial.report.converged;
         newton_ += trial.report.newton;
         conjugate_gradients_ += trial.report.conjugate_gradients;
-        motion = problem.clusters.particles(nodes, body_.particles().position);
+        motion = problem.clusters.particles(nodes);
         trial.leapt = body_.closing_bound(motion) > largest_closing * body_.mean_radius();
         if (trial.leapt) return;  // no list of pairs is made for such a leap: the step is too long
         body_.cover(motion);
         if (candidates_.complete(motion)) return;
-        candidates_.choose(trial.first_order, trial.motion, problem.diffusion);
+        candidates_.choose(trial.first_order, trial.motion, problem.diffusion, true);
         problem.take(body_, candidates_);
     }
 }
@@ -125,7 +124,8 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_share : alone_share),
-                                .second_tolerance = closely};
+                                .second_tolerance = closely,
+                                .poll = settings_.poll};
     Problem problem{diffusion, clusters, settings, std::nullopt};
     problem.take(body_, candidates_);
     Trial trial;
@@ -223,12 +223,18 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
     return trial;
 }
 
+bool ImplicitSintering::nothing_moves(double from, double until) const {
+    if (std::isinf(until)) return false;
+    if (!(kinetics_.equivalent(from, until) > 0.0)) return true;
+    return candidates_.max_isolated_approach(kinetics_.diffusion_over(from, until)) < invisible_approach;
+}
+
 StepRecord ImplicitSintering::advance(double latest_time, double highest_density) {
     const double wanted_change = std::log(highest_density / body_.density());
     const double start = body_.time();
     double duration = 0.0;
     Trial trial;
-    if (!(kinetics_.equivalent(start, latest_time) > 0.0)) {  // too cold for any motion
+    if (nothing_moves(start, latest_time)) {
         trial.until = latest_time;
         trial.motion = trial.first_order = Motion(body_.size());
     } else {
@@ -236,7 +242,7 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
         if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
     }
     idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
-    if (idle_steps_ > most_idle_steps && std::isfinite(highest_density))
+    if (idle_steps_ > most_idle_steps && std::isinf(latest_time))
         throw Error("the density stays at " + std::to_string(body_.density()) +
                     "; no contact is left that densifies the box, so " + std::to_string(highest_density) + " cannot be reached");
     StepRecord record = finish(trial, duration);
@@ -264,6 +270,7 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
     record.attempts = std::exchange(attempts_, 0);
     record.newton = std::exchange(newton_, 0);
     record.conjugate_gradients = std::exchange(conjugate_gradients_, 0);
+    record.imbalance = trial.report.imbalance;
     record.converged = trial.converged;
     return record;
 }

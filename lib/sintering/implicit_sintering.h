@@ -39,6 +39,8 @@ class ImplicitSintering : public SinteringMethod {
 
         void take(const SinteringBody& packing, Candidates& candidates);
     };
+    /// True where a span of time is so cold, or the particles so coarse, that no position would change by its last digit.
+    bool nothing_moves(double from, double until) const;
     void solve(Problem& problem, bool second, Trial& trial);
     Trial attempt(double until, const Motion& guess);
     double step_error(const Trial& trial) const;  // estimated, relative, of the density

@@ -1,6 +1,8 @@
 // kinetics.h: what pairs of materials bring to sintering: surface energy, diffusion over a span of time, the limit of the neck.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/neighbours.h"
@@ -30,18 +32,33 @@ class Kinetics {
 
     double surface_energy(std::size_t row) const { return energy_[row]; }  // J/m2
 
-    /// True for a pair that does not diffuse: once it touches it sticks.
+    /// True for a pair that does not diffuse, or over the whole schedule by less than `rigid_fraction` of the fastest pair: once it
+    /// touches it sticks. The overlap of a pair grows with the cube root of its diffusion, so such a pair would come to less than
+    /// 5e-4 of the fastest one's.
     bool rigid(std::size_t row) const { return rigid_[row]; }
     bool any_rigid() const { return any_rigid_; }
+    static constexpr double rigid_fraction = 1e-10;
+
+    /// Pairs of materials that diffuse and are rigid all the same: their names, and their diffusion over that of the fastest.
+    struct SlowPair {
+        std::string first, second;
+        double fraction;
+    };
+    const std::vector<SlowPair>& taken_as_rigid() const { return taken_as_rigid_; }
 
     /// Largest contact radius over the smaller particle's radius, sin(psi/2) of the dihedral angle psi; infinity where none is
     /// given.
     double neck_limit(std::size_t row) const { return neck_limit_[row]; }
 
-    /// Delta of each pair of materials at a temperature (K), m5/(N s).
+    /// Delta of each pair of materials at a temperature (K), m5/(N s); zero where no particle is of one of them.
     std::vector<double> diffusion_at(double temperature) const;
 
-    /// Integral of Delta over time from `from` to `until` (s) for each pair of materials, m5/N.
+    /// Delta of the fastest pair over that of each pair of materials at a temperature (K), whatever their size; infinity for one
+    /// that does not diffuse.
+    std::vector<double> slowness_at(double temperature) const;
+
+    /// Integral of Delta over time from `from` to `until` (s) for each pair of materials, m5/N. That of a pair which is not rigid is
+    /// at least rigid_fraction of the largest: a firing may have spans in which a pair is slower than that.
     std::vector<double> diffusion_over(double from, double until) const;
 
     /// Equivalent time between two times, s.
@@ -55,14 +72,17 @@ class Kinetics {
 
    private:
     double diffusion(std::size_t row, double temperature) const;
+    bool diffuses(std::size_t row) const;
+    void find_rigid(const Particles& particles);
 
     physics::Schedule schedule_;
     std::size_t materials_;
     std::vector<Material> material_;
     std::vector<double> energy_, neck_limit_;
     std::vector<std::optional<double>> given_;  // Delta of pairs that the state gives
-    std::vector<bool> rigid_;
+    std::vector<bool> present_, rigid_;  // of each pair: particles of both are there; rigid
     bool any_rigid_ = false;
+    std::vector<SlowPair> taken_as_rigid_;
     std::size_t fastest_row_ = 0;
     double fastest_ = 0.0;
     std::vector<double> times_;  // ends of the schedule's panels, s; none for a hold without end

@@ -23,11 +23,20 @@ class RigidClusters {
     std::size_t nodes() const { return place_.size(); }
     const std::vector<Vec3>& places() const { return place_; }  // m, of each node: that of its first particle
 
-    /// The pair as the nodes see it; `turned` tells that its first node comes second.
-    Pair seen(const Pair& pair, bool& turned) const;
+    /// Node of each particle, and the vector from the particle to the node's place, m; none without pairs that stick. Large
+    /// clusters, which have many neighbours, are the last nodes: an incomplete factorisation is best where they come last.
+    std::span<const std::int32_t> node_of() const { return node_; }
+    std::span<const Vec3> arms() const { return arm_; }
 
-    /// True where both particles move together however the box strains.
-    static bool inert(const Pair& seen) { return seen.i == seen.j && seen.image == Image{0, 0, 0}; }
+    /// A pair of particles as the nodes see it.
+    struct NodePair {
+        Pair pair;        // of nodes
+        std::size_t row;  // of the pair of particles
+        bool reversed;    // its first node comes second
+    };
+
+    /// The pairs of nodes, sorted; without those whose particles move together however the box strains.
+    std::vector<NodePair> node_pairs(std::span<const Pair> pairs) const;
 
     /// Axes along which a rigid cluster reaches its own image, so that the box cannot strain.
     const std::array<bool, 3>& locked() const { return locked_; }
@@ -35,17 +44,28 @@ class RigidClusters {
     /// Motion of the nodes that particles with this motion would give them.
     Motion nodes(const Motion& particles) const;
 
+    /// Forces on the nodes, and the work conjugate to the strains, from those on the particles: the transpose of particles().
+    Motion node_forces(const Motion& forces) const;
+
     /// Motion of the particles from that of the nodes.
-    Motion particles(const Motion& nodes, std::span<const Vec3> position) const;
+    Motion particles(const Motion& nodes) const;
 
    private:
+    NodePair node_pair(const Pair& pair, std::size_t row) const;
+
     Box box_;
     bool single_;                     // every particle is a node
     std::vector<std::int32_t> node_;  // of each particle
     std::vector<PeriodicClusters::Offset> offset_;  // image by which the particle is seen from its node
     std::vector<std::int32_t> first_;  // particle that stands for each node
-    std::vector<Vec3> place_;
+    std::vector<Vec3> place_, arm_;
     std::array<bool, 3> locked_{false, false, false};
 };
+
+/// Clusters of the particles that slow contacts tie together, one set for each step in the contrast of the contacts: what a
+/// preconditioner needs to see of a network of soft and stiff contacts. slowness: diffusion of the fastest pair over that of each
+/// pair, zero for one that ties nothing. A slowness begins a set where it is `contrast` times that of the set before.
+std::vector<RigidClusters> coarse_spaces(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs,
+                                         std::span<const double> slowness, double contrast);
 
 }  // namespace kiln::sintering

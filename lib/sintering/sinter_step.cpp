@@ -6,24 +6,31 @@
 
 #include "core/contacts.h"
 #include "physics/sinter_contact.h"
+#include "sintering/force_balance.h"
 
 namespace kiln::sintering {
 
 namespace {
 
-constexpr int most_newton = 60;
-constexpr int most_searches = 12;
-constexpr int most_conjugate_gradients = 5000;
-constexpr double rounding = 1e-6;           // error of a motion below which a direction that leads nowhere is made of rounding
-constexpr double overshoot = 0.5;  // slope left at the end of a Newton step, relative to its start, that asks for a line search
-constexpr double least_tangent = 0.1;      // of the tangent at a pair's own end of the step
-constexpr double loosest_linear = 0.1;     // tolerance of the linear solves, loosest and tightest
-constexpr double tightest_linear = 1e-3;
-constexpr int most_factorisations = 2;     // in one minimisation; later the tangents hardly change
-constexpr double tolerance_share = 0.3;    // of the tolerance, that is left to linear solves
-constexpr double limit_stiffness = 10.0;   // of the springs at closing limits, over the mean tangent of the contacts
-constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a closing limit is met
-constexpr int most_limit_passes = 60;
+constexpr int max_newton = 60;
+constexpr int max_searches = 12;
+constexpr int max_conjugate_gradients = 5000;
+constexpr double rounding = 1e-6;          // error of a motion below which a direction that leads nowhere is made of rounding
+constexpr double overshoot = 0.5;          // slope left at the end of a Newton step, relative to its start, that asks for a line search
+constexpr double min_tangent = 0.1;        // of the tangent at a pair's own end of the step
+constexpr double max_linear = 0.1;         // error of the linear solves, loosest and tightest
+constexpr double min_linear = 1e-3;
+constexpr int max_factorisations = 2;      // in one minimisation; later the tangents hardly change
+constexpr double linear_fraction = 0.3;    // of the tolerance, that is left to linear solves
+constexpr double imbalance_factor = 30.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
+constexpr double min_single = 1e-3;        // a tenth of it is typical; within these bounds
+constexpr double max_single = 0.5;
+constexpr double sharpening = 0.1;         // of what linear solves may leave, where that still unbalances a particle
+constexpr double limit_stiffness = 10.0;   // of the springs at limits of approach, over the mean tangent of the contacts
+constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a limit of approach is met
+constexpr int max_limit_passes = 60;
+constexpr double coarse_contrast = 30.0;   // of diffusion, that makes a coarse space pay
+constexpr double single_contrast = 100.0;  // of diffusion, up to which single precision resolves the soft contacts beside the stiff
 
 double square(double x) { return x * x; }
 
@@ -34,15 +41,26 @@ double touching_share(double start, double end) {
     return std::max(start, end) / std::abs(end - start);
 }
 
+/// Force by which the viscosity of a contact resists an approach over the step; cubic: K/I.
+double pair_resistance(double cubic, double overlap, double approach) {
+    const double start = std::max(0.0, overlap), reached = std::max(0.0, overlap + approach);
+    // While both touch the approach is taken as it is: the difference of overlaps would be the rounding of a slow contact's.
+    const double change = overlap > 0.0 && reached > 0.0 ? approach : reached - start;
+    return cubic * physics::mean_viscosity_shape(start, reached) * change;
+}
+
+/// Of each pair, zero for one that does not touch yet: it ties nothing.
+std::vector<double> slowness_of(std::span<const PairStep> step) {
+    std::vector<double> slowness;
+    slowness.reserve(step.size());
+    for (const PairStep& pair : step) slowness.push_back(pair.overlap >= 0.0 ? pair.slowness : 0.0);
+    return slowness;
+}
+
 /// Overlap at the end of the step of a pair that nothing else holds, under its share of the driving force, m.
 double alone(const PairStep& pair, double share) {
     if (!(pair.cubic > 0.0)) return 0.0;
-    return physics::pair_overlap(pair.overlap, share * pair.force, 1.0, pair.cubic);
-}
-
-/// Resistance to closing from one overlap to another, both not negative: (K/I) times the integral of h^2.
-double resistance(double cubic, double start, double reached) {
-    return cubic / 3.0 * (reached * reached * reached - start * start * start);
+    return physics::overlap_of_integral(pair.overlap, share * pair.force / pair.cubic);
 }
 
 }  // namespace
@@ -54,23 +72,29 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       step_(step),
       settings_(settings),
       network_(box, position, pairs),
-      stiffness_(network_),
-      solver_(position.size()),
-      preconditioner_(network_),
+      coarse_(coarse_spaces(box, position, pairs, slowness_of(step), coarse_contrast)),
       rows_(pairs.size()),
       entries_(network_.pair.size()),
       total_(3 * position.size()),
       drive_(position.size()),
       unbalanced_(position.size()),
       direction_(position.size()) {
-    levers_.reserve(step.size());
-    for (const PairStep& pair : step) levers_.push_back(pair.lever);
+    branch_.reserve(step.size());
+    double slowest = 0.0;
+    for (const PairStep& pair : step) {
+        branch_.push_back(pair.lever);
+        slowest = std::max(slowest, pair.slowness);
+    }
+    if (slowest <= single_contrast)
+        solver_ = std::make_unique<TangentSolver<float>>(box, network_, pairs, coarse_);
+    else
+        solver_ = std::make_unique<TangentSolver<double>>(box, network_, pairs, coarse_);
 }
 
 Vec3 SinterStep::relative(std::size_t row, const Motion& motion) const {
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].i)]);
     const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pairs_[row].j)]);
-    return b - a + motion.strain.cwiseProduct(levers_[row]);
+    return b - a + motion.strain.cwiseProduct(branch_[row]);
 }
 
 SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double share, double goal,
@@ -81,26 +105,24 @@ SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal
 }
 
 void SinterStep::start_geometry() {
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < step_.size(); ++row) {
+    for_rows(step_.size(), [&](std::size_t row) {
         const PairStep& pair = step_[row];
         const double share = pair.overlap >= 0.0 ? 1.0 : 0.0, goal = alone(pair, share);
         // Shear by the overlap that the pair alone would come to: at the start of the step a new contact has no neck to resist.
         rows_[row] = pair_force(row, pair.vector / pair.distance, share, goal, goal);
-    }
+    });
     pressure_volume_ = settings_.pressure * box_.volume();
     take_geometry();
 }
 
 void SinterStep::midpoint_geometry(const Motion& motion) {
-#pragma omp parallel for schedule(static)
-    for (std::size_t row = 0; row < step_.size(); ++row) {
+    for_rows(step_.size(), [&](std::size_t row) {
         const PairStep& pair = step_[row];
         const Vec3 end = pair.vector + relative(row, motion);
         const double end_overlap = pair.overlap + pair.distance - end.norm();
         const double share = touching_share(pair.overlap, end_overlap);
         rows_[row] = pair_force(row, (pair.vector + end).normalized(), share, alone(pair, share), end_overlap);
-    }
+    });
     const Vec3 stretch = Vec3::Ones() + 0.5 * motion.strain;  // the pressure acts on the faces of the box as they are half way
     pressure_volume_ = settings_.pressure * box_.volume() * stretch.prod();
     pressure_volume_ = pressure_volume_.cwiseQuotient(stretch);
@@ -109,13 +131,15 @@ void SinterStep::midpoint_geometry(const Motion& motion) {
 
 /// Brings what does not change between Newton's iterations into the order of the network.
 void SinterStep::take_geometry() {
-    network_.for_chunks([&](std::size_t index) {
-        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-        for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
-            entries_[entry] = rows_[static_cast<std::size_t>(network_.pair[entry])];
-            stiffness_.set_direction(entry, entries_[entry].normal);
-        }
-    });
+    std::visit([&](auto& solver) {
+        network_.for_chunks([&](std::size_t index) {
+            const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+            for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
+                entries_[entry] = rows_[static_cast<std::size_t>(network_.pair[entry])];
+                solver->stiffness().set_direction(entry, entries_[entry].normal);
+            }
+        });
+    }, solver_);
     const Motion rest(network_.particles());
     network_.gather(rest, drive_, total_,
                     [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].drive * entries_[entry].normal; });
@@ -124,46 +148,76 @@ void SinterStep::take_geometry() {
 
 void SinterStep::start_limits() {
     double stiffness = 0.0;
-    for (const PairForce& pair : rows_) stiffness += pair.drive > 0.0 ? pair.cubic * square(pair.goal) : 0.0;
+    for (const PairForce& pair : rows_) stiffness += pair.drive > 0.0 ? pair.cubic * physics::viscosity_shape(pair.goal) : 0.0;
     limits_.reset(step_.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1)));
     for (std::size_t row = 0; row < step_.size(); ++row) {
         const PairStep& pair = step_[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
-        limits_.add(row, pair.limit, std::max(0.0, rows_[row].drive - resistance(pair.cubic, start, reached)));  // as if alone
+        limits_.add(row, pair.limit, std::max(0.0, rows_[row].drive - pair.cubic * physics::viscosity_integral(start, reached)));  // as if alone
     }
 }
 
-void SinterStep::forces(const Motion& motion, Motion& unbalanced, bool secant) {
-    network_.gather(motion, unbalanced, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
+template <typename Real>
+void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool secant) {
+    network_.gather(motion, unbalanced_, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
         const PairForce& pair = entries_[entry];
         const double along = pair.normal.dot(du);  // opening
-        const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap - along);
+        const double reached = std::max(0.0, pair.overlap - along);
+        const double resistance = pair_resistance(pair.cubic, pair.overlap, -along);
         // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least
         // a part of the tangent there.
-        const double least =
-            secant ? (square(pair.goal) + pair.goal * reached + square(reached)) / 3.0 : least_tangent * square(pair.goal);
+        const double least = secant ? physics::mean_viscosity_shape(pair.goal, reached)
+                                    : min_tangent * physics::viscosity_shape(pair.goal);
         const double limit = limits_.any() ? limits_.reaction(static_cast<std::size_t>(network_.pair[entry]), -along) : 0.0;
-        const double tangent = pair.cubic * std::max(square(reached), reached < pair.goal ? least : 0.0);
-        stiffness_.set(entry, tangent + (limit > 0.0 ? limits_.stiffness() : 0.0), pair.tangential);
-        return (pair.drive - resistance(pair.cubic, start, reached) - limit - pair.tangential * along) * pair.normal +
+        const double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.goal ? least : 0.0);
+        solver.stiffness().set(entry, tangent + (limit > 0.0 ? limits_.stiffness() : 0.0), pair.tangential);
+        return (pair.drive - resistance - limit - pair.tangential * along) * pair.normal +
                pair.tangential * du;
     });
-    strain_force_ = unbalanced.strain;
-    unbalanced.strain += pressure_volume_;
-    project(unbalanced, settings_.allowed_strain);
+    strain_force_ = unbalanced_.strain;
+    unbalanced_.strain += pressure_volume_;
+    project(unbalanced_, settings_.allowed_strain);
     work_ = -dot(network_, drive_, motion) - pressure_volume_.dot(motion.strain);
+    if (!std::isfinite(work_)) throw Error("a step of sintering meets a force that is not a finite number");
+}
+
+void SinterStep::forces(const Motion& motion, bool secant) {
+    std::visit([&](auto& solver) { forces(*solver, motion, secant); }, solver_);
+}
+
+double SinterStep::imbalance(const Motion& motion) const {
+    std::vector<double> exerted(rows_.size());
+    Vec3 on_box = pressure_volume_.cwiseAbs();
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+        // Of a pair that touches for a part of the step the whole sintering force: the part may be next to nothing.
+        const double approach = -rows_[row].normal.dot(relative(row, motion));
+        const double resistance = pair_resistance(rows_[row].cubic, rows_[row].overlap, approach);
+        exerted[row] = step_[row].force + std::abs(resistance) + (limits_.any() ? limits_.reaction(row, approach) : 0.0);
+        on_box += exerted[row] * rows_[row].normal.cwiseProduct(branch_[row]).cwiseAbs();
+    }
+    // On the box: what its axes share out among those that strain together.
+    on_box = settings_.allowed_strain.cwiseAbs() * on_box;
+    double worst = max_imbalance(pairs_, exerted, coarse_, unbalanced_);
+    const auto judge_box = [&](const Vec3& left) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (left[axis] != 0.0) worst = std::max(worst, std::abs(left[axis]) / on_box[axis]);
+    };
+    judge_box(unbalanced_.strain);
+    for (const RigidClusters& clusters : coarse_)  // the box as it strains with clusters that move as one
+        judge_box(settings_.allowed_strain * clusters.node_forces(unbalanced_).strain);
+    return worst;
 }
 
 double SinterStep::line_search(double slope, Motion& motion) {
     double length = 1.0, low = 0.0, low_slope = -slope, high = 1.0, high_slope = dot(network_, unbalanced_, direction_);
     if (high_slope <= overshoot * slope) return length;
-    for (int search = 0; search < most_searches; ++search) {  // regula falsi on the slope; a convex function has one zero of it
+    for (int search = 0; search < max_searches; ++search) {  // regula falsi on the slope; a convex function has one zero of it
         const double share = std::clamp(-low_slope / (high_slope - low_slope), 0.1, 0.9);
         const double next = low + share * (high - low);
         add(network_, next - length, direction_, motion);
         length = next;
-        forces(motion, unbalanced_, false);
+        forces(motion, false);
         const double left = dot(network_, unbalanced_, direction_);
         if (std::abs(left) <= overshoot * slope) break;
         if (left > 0.0) {
@@ -179,26 +233,44 @@ double SinterStep::line_search(double slope, Motion& motion) {
 }
 
 bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
-    forces(motion, unbalanced_, true);
-    for (int iteration = 0; iteration < most_newton; ++iteration) {
-        if (iteration < most_factorisations) preconditioner_.factorise(stiffness_, levers_);
+    const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
+    double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
+    forces(motion, true);
+    for (int iteration = 0; iteration < max_newton; ++iteration) {
         unbalanced_.strain *= -1.0;
         for (double& component : unbalanced_.displacement) component = -component;
-        // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
-        const LinearGoal goal{.loosest = loosest_linear, .tightest = tightest_linear, .scale = work_,
-                              .enough = square(tolerance_share * tolerance) * work_, .most_iterations = most_conjugate_gradients};
-        const LinearSolve linear =
-            solver_.solve(stiffness_, preconditioner_, settings_.allowed_strain, unbalanced_, direction_, goal);
+        const linalg::CgProgress linear = std::visit([&](auto& solver) {
+            if (iteration < max_factorisations) solver->factorise(branch_);
+            // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
+            return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
+                if (settings_.poll) settings_.poll();
+                const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
+                const double goal = std::clamp(size, min_linear, max_linear);
+                return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||
+                       progress.iterations >= max_conjugate_gradients;
+            });
+        }, solver_);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
         const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction
-        if (!(slope > 0.0)) return true;
-        add(network_, 1.0, direction_, motion);
-        forces(motion, unbalanced_, false);
-        const double length = line_search(slope, motion);
-        const double error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
-        const double now = length < 1.0 ? error : (linear.residual + error) * error;
-        if (now < tolerance || (length < 0.5 && error < rounding)) return true;
+        if (!std::isfinite(slope)) throw Error("a step of sintering meets a motion that is not a finite number");
+        double error = 0.0, now = 0.0;
+        if (slope > 0.0) {
+            add(network_, 1.0, direction_, motion);
+            forces(motion, false);
+            const double length = line_search(slope, motion);
+            error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
+            now = length < 1.0 ? error : (linear.relative_error() + error) * error;
+            if (length < 0.5 && error < rounding) now = 0.0;
+        } else {
+            unbalanced_.strain *= -1.0;
+            for (double& component : unbalanced_.displacement) component = -component;
+        }
+        if (now >= tolerance) continue;
+        report.imbalance = imbalance(motion);
+        if (report.imbalance <= balanced) return true;
+        if (sufficient == 0.0) return false;  // nothing that is left moves anything
+        sufficient = slope > 0.0 ? square(sharpening) * sufficient : 0.0;
     }
     return false;
 }
@@ -210,7 +282,7 @@ bool SinterStep::minimise(double tolerance, Motion& motion, StepReport& report) 
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
             [&](std::size_t row) { return limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
-        if (pass == most_limit_passes) return false;
+        if (pass == max_limit_passes) return false;
         converged = newton(tolerance, motion, report);
     }
     return converged;

@@ -2,17 +2,20 @@
 //
 // Balance of all contact forces at the end of the step makes the sum over contacts
 //     D(w) + kt/2 |u_t|^2 - f w,   D'(w) = K/(3 I) [(h + w)+^3 - h+^3]
-// stationary, where w is the closing along the contact normal, u_t the tangential motion, h the overlap at the start, K h^2/Delta
+// stationary, where w is the approach along the contact normal, u_t the tangential motion, h the overlap at the start, K h^2/Delta
 // the normal viscosity, I the integral of Delta over the step, kt the tangential viscosity over I and f the sintering force. The
 // cube is the exact integral of the viscosity over the overlap: an isolated pair is exact for a step of any length.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "sintering/closing_limits.h"
-#include "sintering/conjugate_gradients.h"
 #include "sintering/contact_network.h"
+#include "sintering/tangent_solver.h"
 
 namespace kiln::sintering {
 
@@ -28,22 +31,29 @@ struct PairStep {
     double cubic;            // K/I, force/m3
     double shear;            // tangential viscosity over h and I, force/m2
     double limit;            // largest closing, m; infinity for none
+    double slowness;         // integral of Delta over the step of the fastest pair over that of this one; zero where none diffuses
 };
 
 struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
+    std::function<void()> poll;                       // called between iterations; may throw to end the step; none: never
 };
 
 struct StepReport {
     int newton = 0;
     int conjugate_gradients = 0;
     bool converged = true;
+    double imbalance = 0.0;  // largest force left on a particle, a cluster or the box, over the forces that contacts exert on it
     Vec3 stress = Vec3::Zero();  // mean over the step along the axes, tension positive, force/m2
 };
 
 /// Solves one step. Keeps references to the pairs and to what each of them brings into it (a row a pair).
+///
+/// A motion is converged when its error in the energy norm, estimated by a linear solve for what is left of the forces, is below
+/// the tolerance, and the forces on each particle, on each cluster of particles that slow contacts tie together, and on the box are
+/// in balance. Throws Error where a number is not finite.
 class SinterStep {
    public:
     SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, std::span<const PairStep> step,
@@ -72,7 +82,12 @@ class SinterStep {
     bool minimise(double tolerance, Motion& motion, StepReport& report);
     bool newton(double tolerance, Motion& motion, StepReport& report);
     double line_search(double slope, Motion& motion);
-    void forces(const Motion& motion, Motion& unbalanced, bool secant);
+    /// The forces that a motion leaves unbalanced, and the stiffness there.
+    void forces(const Motion& motion, bool secant);
+    template <typename Real>
+    void forces(TangentSolver<Real>& solver, const Motion& motion, bool secant);
+    /// Largest unbalanced force of the last call of forces(), see StepReport.
+    double imbalance(const Motion& motion) const;
     void remove_drift(Motion& motion) const;
 
     Box box_;
@@ -80,12 +95,11 @@ class SinterStep {
     std::span<const PairStep> step_;
     StepSettings settings_;
     ContactNetwork network_;
-    Stiffness stiffness_;
-    ConjugateGradients solver_;
-    Preconditioner preconditioner_;
+    std::vector<RigidClusters> coarse_;  // of particles that slow contacts tie together
+    std::variant<std::unique_ptr<TangentSolver<float>>, std::unique_ptr<TangentSolver<double>>> solver_;
     ClosingLimits limits_;
     std::vector<PairForce> rows_, entries_;  // of the pairs, and in the order of the network
-    std::vector<Vec3> levers_;               // a row a pair, m
+    std::vector<Vec3> branch_;               // a row a pair, m
     std::vector<double> total_;
     Motion drive_, unbalanced_, direction_;  // drive_: the driving forces alone
     Vec3 pressure_volume_ = Vec3::Zero();  // work of the pressure for a unit strain along each axis

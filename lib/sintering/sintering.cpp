@@ -17,6 +17,13 @@ std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::
     throw Error("the checkpoint has no array " + name + " of " + std::to_string(rows) + " rows");
 }
 
+SinteringMethod::SinteringMethod(State state, const SinteringSettings& settings)
+    : settings_(settings), body_(std::move(state), settings.faces), kinetics_(body_.working(), settings.schedule) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !body_.box().periodic[axis]))
+            throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
+}
+
 State SinteringMethod::checkpoint() const {
     State state = body_.working();
     for (NamedArray& array : arrays()) state.particles.other.push_back(std::move(array));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "core/contacts.h"
 #include "sintering/kinetics.h"
@@ -21,6 +22,7 @@ struct SinteringSettings {
     double solver_tolerance = 3e-3;  // relative error of a step's motion in the energy norm
     bool second_order = true;        // of the implicit step
     double mass_scaling = 1e20;      // of the explicit method: inertial over real mass
+    std::function<void()> poll;      // called several times a second; may throw to end a step, which then leaves the state as it was
 };
 
 /// What one step did; also the keys of the density history.
@@ -33,6 +35,7 @@ struct StepRecord {
     ContactStatistics contacts{};
     double error = 0.0;                 // estimated, of the density since the start, relative
     int attempts = 0, newton = 0, conjugate_gradients = 0;  // of the step, rejected attempts included
+    double imbalance = 0.0;             // largest force left on a particle, a cluster or the box, relative; see SinterStep
     bool converged = true;
 };
 
@@ -42,7 +45,7 @@ class SinteringMethod {
     virtual ~SinteringMethod() = default;
 
     /// One step (the explicit method: a few), ended early at latest_time (s) or where the density reaches highest_density.
-    /// Throws Error if nothing densifies any more although a density is wanted.
+    /// Throws Error if nothing densifies any more although the step has no latest time.
     virtual StepRecord advance(double latest_time, double highest_density) = 0;
 
     /// All that the next steps depend on, as a state: particles in working order with further arrays, and numbers under the key
@@ -54,14 +57,15 @@ class SinteringMethod {
     void restore(const State& checkpoint);
 
     const SinteringBody& packing() const { return body_; }
+    const Kinetics& kinetics() const { return kinetics_; }
     std::size_t steps() const { return steps_; }
     double time() const { return body_.time(); }
     double relative_density() const { return body_.density(); }
     State state() const { return body_.state(); }
 
    protected:
-    SinteringMethod(State state, const SinteringSettings& settings)
-        : settings_(settings), body_(std::move(state), settings.faces), kinetics_(body_.working(), settings.schedule) {}
+    /// Throws Error where a material lacks what the contact law needs, or a pressure has no face to act on.
+    SinteringMethod(State state, const SinteringSettings& settings);
 
     /// Numbers and arrays (a row a particle) of the method itself, and the way back.
     virtual Json numbers() const = 0;

@@ -15,7 +15,6 @@ namespace {
 constexpr double list_room = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
 constexpr double room_ahead = 2.0;    // of the travel of a fast particle, that is made room for
 constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
-constexpr std::size_t worth_threads = 8192;  // particles from which a pass takes longer than waking and joining threads
 
 }  // namespace
 

@@ -1,131 +1,187 @@
-// viscosity.cpp: four linear solves on the contact network, one without strain and one for each axis.
+// viscosity.cpp: three linear solves on the contact network, one for a unit strain rate along each axis.
 #include "sintering/viscosity.h"
 
 #include <algorithm>
+#include <cmath>
 
-#include "sintering/conjugate_gradients.h"
+#include "sintering/force_balance.h"
 #include "sintering/kinetics.h"
-#include "sintering/sintering_body.h"
 #include "sintering/rigid_clusters.h"
+#include "sintering/sintering_body.h"
+#include "sintering/tangent_solver.h"
 
 namespace kiln::sintering {
 
 namespace {
 
-constexpr double accuracy = 1e-7;       // of the solves, energy norm
-constexpr int most_iterations = 20000;
-constexpr double least_overlap = 1e-3;  // of the reduced radius, see viscosity.h
-constexpr double pass_accuracy = 1e-3;  // of one solve, which is in single precision; refinement takes up what it leaves
-constexpr int most_refinements = 20;
+constexpr double accuracy = 1e-7;        // of the motions, energy norm; the viscosities' error is the square of that
+constexpr double balance = 1e-4;         // of the forces on a particle or a cluster
+constexpr int max_iterations = 20000;
+constexpr double min_overlap = 1e-3;     // of the reduced radius, see viscosity.h
+constexpr double coarse_contrast = 30.0; // of diffusion, that makes a coarse space pay
 
-/// Touching contacts of a state as the nodes see them; viscosities over `unit`, which makes them plain numbers near one.
+/// Touching contacts of a state as the nodes see them; viscosities times Delta of the fastest pair.
 struct Contacts {
     std::vector<Pair> pairs;
-    std::vector<Vec3> levers, normals;              // m; unit vectors
-    std::vector<double> force, normal, tangential;  // N; viscosities
-    double unit = 0.0;                              // N s/m
-
-    /// Square of the energy norm of the contact forces under affine motion, by which accuracy is measured: in a lattice they cancel
-    /// on every particle, and what is left to solve for is rounding.
-    double square_under(const Vec3& strain_rate, double drive) const {
-        double sum = 0.0;
-        for (std::size_t row = 0; row < pairs.size(); ++row) {
-            const double pull = drive * force[row] + normal[row] * normals[row].dot(strain_rate.cwiseProduct(levers[row]));
-            sum += pull * pull / (normal[row] * unit);
-        }
-        return sum;
-    }
+    std::vector<Vec3> branch, normals;                       // m; unit vectors
+    std::vector<double> force, normal, tangential, slowness; // N; viscosities; Delta of the fastest pair over that of this one
 };
 
-Contacts contacts_of(const SinteringBody& packing, const Kinetics& kinetics, const physics::ContactConstants& constants,
-                     const std::vector<double>& diffusion, const RigidClusters& clusters) {
+Contacts contacts_of(const SinteringBody& body, const Kinetics& kinetics, const physics::ContactConstants& constants,
+                     const std::vector<double>& slowness, const RigidClusters& clusters) {
     Contacts contacts;
-    for (const Pair& pair : packing.pairs()) {
-        const Vec3 vector = packing.vector(pair);
-        const auto [first, second] = packing.radii(pair);
-        const double overlap = first + second - vector.norm();
-        bool turned = false;
-        const Pair seen = clusters.seen(pair, turned);
-        if (overlap < 0.0 || RigidClusters::inert(seen)) continue;
-        const std::size_t kind = kinetics.row(packing.particles(), pair);
-        if (kinetics.rigid(kind)) continue;
-        const double reduced = physics::reduced_radius(first, second), aged = std::max(overlap, least_overlap * reduced);
-        contacts.pairs.push_back(seen);
-        contacts.levers.push_back(pair_vector(packing.box(), clusters.places(), seen));
-        contacts.normals.emplace_back((turned ? -1.0 : 1.0) * vector.normalized());
+    for (const RigidClusters::NodePair& seen : clusters.node_pairs(body.pairs())) {
+        const Pair& pair = body.pairs()[seen.row];
+        const Vec3 vector = body.vector(pair);
+        const auto [first, second] = body.radii(pair);
+        const double overlap = contact_overlap(first, second, vector.norm());
+        const std::size_t kind = kinetics.row(body.particles(), pair);
+        if (overlap < 0.0 || kinetics.rigid(kind)) continue;
+        const double reduced = physics::reduced_radius(first, second), aged = std::max(overlap, min_overlap * reduced);
+        contacts.pairs.push_back(seen.pair);
+        contacts.branch.push_back(pair_vector(body.box(), clusters.places(), seen.pair));
+        contacts.normals.emplace_back((seen.reversed ? -1.0 : 1.0) * vector.normalized());
         contacts.force.push_back(physics::sintering_force(constants, reduced, kinetics.surface_energy(kind)));
-        contacts.normal.push_back(physics::normal_viscosity_factor(constants, reduced) * aged * aged / diffusion[kind]);
-        contacts.tangential.push_back(physics::tangential_viscosity(constants, aged, reduced) / diffusion[kind]);
+        contacts.normal.push_back(physics::normal_viscosity_factor(constants, reduced) * physics::viscosity_shape(aged) * slowness[kind]);
+        contacts.tangential.push_back(physics::tangential_viscosity(constants, aged, reduced) * slowness[kind]);
+        contacts.slowness.push_back(slowness[kind]);
     }
-    for (const double value : contacts.normal) contacts.unit = std::max(contacts.unit, value);
     return contacts;
 }
 
-Stiffness stiffness_of(const ContactNetwork& network, const Contacts& contacts) {
-    Stiffness stiffness(network);
-    for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
-        const auto row = static_cast<std::size_t>(network.pair[entry]);
-        stiffness.set_direction(entry, contacts.normals[row]);
-        stiffness.set(entry, contacts.normal[row] / contacts.unit, contacts.tangential[row] / contacts.unit);
-    }
-    return stiffness;
-}
-
-std::vector<Pair> sticking_pairs(const SinteringBody& packing, const Kinetics& kinetics) {
+std::vector<Pair> sticking_pairs(const SinteringBody& body, const Kinetics& kinetics) {
     std::vector<Pair> sticking;
-    for (const Pair& pair : packing.pairs())
-        if (sticks(packing, kinetics, pair)) sticking.push_back(pair);
+    for (const Pair& pair : body.pairs())
+        if (sticks(body, kinetics, pair)) sticking.push_back(pair);
     return sticking;
 }
 
+/// Motions of a packing under strain rates of its box.
+class Response {
+   public:
+    Response(const Box& box, std::span<const Vec3> position, const Contacts& contacts)
+        : contacts_(contacts),
+          network_(box, position, contacts.pairs),
+          coarse_(coarse_spaces(box, position, contacts.pairs, contacts.slowness, coarse_contrast)),
+          solver_(box, network_, contacts.pairs, coarse_),
+          total_(3 * network_.particles()) {
+        for (const double value : contacts.normal) unit_ = std::max(unit_, value);
+        for (std::size_t entry = 0; entry < network_.pair.size(); ++entry) {
+            const auto row = static_cast<std::size_t>(network_.pair[entry]);
+            solver_.stiffness().set_direction(entry, contacts.normals[row]);
+            solver_.stiffness().set(entry, contacts.normal[row] / unit_, contacts.tangential[row] / unit_);
+        }
+        solver_.factorise(contacts.branch);
+    }
+
+    struct Field {
+        Motion motion, forces;  // forces over the largest viscosity
+        int iterations = 0;
+        bool converged = false;
+    };
+
+    /// The motion in which nothing but the box holds the particles against the strain rate.
+    Field under(const Vec3& strain_rate, const std::function<void()>& poll) {
+        Field field{Motion(network_.particles()), Motion(network_.particles())};
+        field.motion.strain = strain_rate;
+        std::vector<double> exerted(contacts_.pairs.size());
+        double scale = 0.0;  // square of the energy norm of the motion in which all particles follow the box
+        for (std::size_t row = 0; row < exerted.size(); ++row) {
+            const Vec3 motion = strain_rate.cwiseProduct(contacts_.branch[row]);
+            const double along = contacts_.normals[row].dot(motion);
+            const Vec3 force = (contacts_.tangential[row] * motion +
+                                (contacts_.normal[row] - contacts_.tangential[row]) * along * contacts_.normals[row]) / unit_;
+            exerted[row] = force.norm();
+            scale += force.dot(motion);
+        }
+        Motion unbalanced(network_.particles()), correction(network_.particles());
+        for (int pass = 0; pass < max_passes; ++pass) {
+            find_forces(field);
+            unbalanced.displacement = field.forces.displacement;
+            field.converged = false;
+            for (double& component : unbalanced.displacement) component = -component;
+            const linalg::CgProgress solve = solver_.solve(
+                Eigen::Matrix3d::Zero(), unbalanced, correction, [&](const linalg::CgProgress& progress) {
+                    if (poll) poll();
+                    return progress.error2 <= accuracy * accuracy * scale || progress.iterations >= max_iterations;
+                });
+            field.iterations += solve.iterations;
+            add(network_, 1.0, correction, field.motion);
+            find_forces(field);
+            field.converged = solve.error2 <= accuracy * accuracy * scale &&
+                              max_imbalance(contacts_.pairs, exerted, coarse_, field.forces) <= balance;
+            if (field.converged) break;
+        }
+        return field;
+    }
+
+    double unit() const { return unit_; }
+
+    /// Sum over the contacts of the sintering force times the approach of the pair in a motion, with its sign turned.
+    double work_of_sintering(const Motion& motion) {
+        Motion forces(network_.particles());
+        network_.gather(motion, forces, total_, [&](std::size_t entry, const Vec3&) -> Vec3 {
+            const auto row = static_cast<std::size_t>(network_.pair[entry]);
+            return contacts_.force[row] * contacts_.normals[row];
+        });
+        return dot(network_, forces, motion);
+    }
+
+    double product(const Motion& a, const Motion& b) const { return dot(network_, a, b); }
+
+   private:
+    static constexpr int max_passes = 3;
+
+    void find_forces(Field& field) {
+        network_.gather(field.motion, field.forces, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
+            const auto row = static_cast<std::size_t>(network_.pair[entry]);
+            const double along = contacts_.normals[row].dot(du);
+            return ((contacts_.normal[row] - contacts_.tangential[row]) * along * contacts_.normals[row] +
+                    contacts_.tangential[row] * du) / unit_;
+        });
+    }
+
+    const Contacts& contacts_;
+    ContactNetwork network_;
+    std::vector<RigidClusters> coarse_;
+    TangentSolver<double> solver_;
+    std::vector<double> total_;
+    double unit_ = 0.0;  // the largest viscosity
+};
+
 }  // namespace
 
-ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature) {
+ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature,
+                                 const std::function<void()>& poll) {
     for (const bool axis : state.box.periodic)
         if (!axis) throw Error("viscosities are those of a box that is periodic along all axes");
-    const SinteringBody packing(state, Faces::as_given);
+    const SinteringBody body(state, Faces::as_given);
     const Kinetics kinetics(state, physics::Schedule::hold(temperature));
-    const RigidClusters clusters(packing.box(), packing.particles().position, sticking_pairs(packing, kinetics));
-    Contacts contacts = contacts_of(packing, kinetics, constants, kinetics.diffusion_at(temperature), clusters);
+    const RigidClusters clusters(body.box(), body.particles().position, sticking_pairs(body, kinetics));
+    const Contacts contacts = contacts_of(body, kinetics, constants, kinetics.slowness_at(temperature), clusters);
     ViscousResponse response;
+    response.locked = clusters.locked();
     if (contacts.pairs.empty()) return response;
 
-    const ContactNetwork network(packing.box(), clusters.places(), contacts.pairs);
-    const Stiffness stiffness = stiffness_of(network, contacts);
-    Preconditioner preconditioner(network);
-    preconditioner.factorise(stiffness, contacts.levers);
-    ConjugateGradients solver(network.particles());
-    std::vector<double> total(3 * network.particles());
-    const auto stress_under = [&](const Vec3& strain_rate, double drive) -> Vec3 {
-        Motion motion(network.particles()), forces(network.particles()), correction(network.particles());
-        motion.strain = strain_rate;
-        const auto unbalanced = [&] {
-            network.gather(motion, forces, total, [&](std::size_t entry, const Vec3& du) -> Vec3 {
-                const auto row = static_cast<std::size_t>(network.pair[entry]);
-                const double along = contacts.normals[row].dot(du);
-                return (drive * contacts.force[row] + (contacts.normal[row] - contacts.tangential[row]) * along) / contacts.unit *
-                           contacts.normals[row] +
-                       contacts.tangential[row] / contacts.unit * du;
-            });
-        };
-        const double enough = accuracy * accuracy * contacts.square_under(strain_rate, drive);
-        for (int pass = 0; pass < most_refinements; ++pass) {
-            unbalanced();
-            for (double& component : forces.displacement) component = -component;
-            forces.strain.setZero();
-            const LinearGoal goal{.loosest = pass_accuracy, .tightest = pass_accuracy, .enough = enough,
-                                  .most_iterations = most_iterations};
-            const LinearSolve solve = solver.solve(stiffness, preconditioner, Eigen::Matrix3d::Zero(), forces, correction, goal);
-            response.conjugate_gradients += solve.iterations;
-            response.converged = solve.start <= enough;
-            if (response.converged) break;
-            add(network, 1.0, correction, motion);
+    Response packing(body.box(), clusters.places(), contacts);
+    std::vector<Response::Field> fields;
+    for (int axis = 0; axis < 3; ++axis) {
+        fields.push_back(packing.under(Vec3::Unit(axis), poll));
+        response.conjugate_gradients += fields.back().iterations;
+        response.converged = response.converged && fields.back().converged;
+    }
+    // The work of one field's forces in another's motion: symmetric and positive by construction, and its error is the product of
+    // the errors of both fields. The sintering stress is the work of the sintering forces in the same motions (reciprocity).
+    const double volume = body.box().volume();
+    for (int row = 0; row < 3; ++row) {
+        const Motion& motion = fields[static_cast<std::size_t>(row)].motion;
+        response.sintering_stress[row] = packing.work_of_sintering(motion) / volume;
+        for (int column = 0; column < 3; ++column) {
+            const Response::Field &a = fields[static_cast<std::size_t>(row)], &b = fields[static_cast<std::size_t>(column)];
+            const double work = 0.5 * (packing.product(a.motion, b.forces) + packing.product(b.motion, a.forces));
+            response.viscosity(row, column) = work * (packing.unit() / volume) / kinetics.fastest();
         }
-        unbalanced();
-        return contacts.unit / packing.box().volume() * forces.strain;
-    };
-    response.sintering_stress = stress_under(Vec3::Zero(), 1.0);
-    for (int axis = 0; axis < 3; ++axis) response.viscosity.col(axis) = stress_under(Vec3::Unit(axis), 0.0);
+    }
     return response;
 }
 

@@ -1,6 +1,9 @@
 // viscosity.h: what a packing is as a continuum while it sinters: sintering stress, bulk and shear viscosity.
 #pragma once
 
+#include <array>
+#include <functional>
+
 #include "core/state.h"
 #include "physics/sinter_contact.h"
 
@@ -11,7 +14,8 @@ struct ViscousResponse {
     Vec3 sintering_stress = Vec3::Zero();                  // Pa, tension that holds the box still
     Eigen::Matrix3d viscosity = Eigen::Matrix3d::Zero();   // Pa s, stress along a row's axis for a strain rate along a column's
     int conjugate_gradients = 0;
-    bool converged = true;
+    bool converged = true;                           // of the motions, by their forces in double precision
+    std::array<bool, 3> locked{false, false, false};  // axes that a rigid cluster spans: along them the box does not flow
 
     double mean_sintering_stress() const { return sintering_stress.mean(); }       // Pa
     double bulk_viscosity() const { return viscosity.sum() / 9.0; }                // Pa s
@@ -22,9 +26,16 @@ struct ViscousResponse {
     }
 };
 
-/// Imposes a unit strain rate along each axis, and none, with the particles free to move in the box, at the state's contacts.
+/// Imposes a unit strain rate along each axis with the particles free to move in the box, at the state's contacts.
+///
 /// A contact that has just formed has no viscosity, and the response at that instant no meaning: overlaps count as at least 1e-3
-/// R*. temperature: K. Contacts that do not diffuse hold their particles together. Throws Error where an axis is not periodic.
-ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature);
+/// R*. temperature: K; the sintering stress depends on it only through the ratios of several materials' diffusion. Contacts that do
+/// not diffuse, or by less than Kinetics::rigid_fraction of the fastest, hold their particles together. poll: called between
+/// iterations, may throw. Throws Error where an axis is not periodic.
+ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature,
+                                 const std::function<void()>& poll = {});
+
+/// Viscosity above which a body does not flow in any sense that can be measured, Pa s: under 1 GPa by less than 1e-7 in a year.
+inline constexpr double max_meaningful_viscosity = 1e24;
 
 }  // namespace kiln::sintering

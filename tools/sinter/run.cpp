@@ -24,6 +24,10 @@ constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a bo
 
 using sintering::triple;
 
+void stop_if_requested() {
+    if (cli::stop_requested()) throw io::Interrupted();
+}
+
 Json summary_of(const sintering::StepRecord& record, const std::string& method) {
     Json summary{{"method", method},
                  {"time", record.time},
@@ -39,12 +43,14 @@ Json summary_of(const sintering::StepRecord& record, const std::string& method) 
     summary["density_error"] = record.error;
     summary["newton"] = record.newton;
     summary["conjugate_gradients"] = record.conjugate_gradients;
+    summary["imbalance"] = record.imbalance;
     summary["converged"] = record.converged;
     return summary;
 }
 
 void add_viscosities(Json& summary, const State& state, const Options& options) {
-    const sintering::ViscousResponse response = sintering::viscous_response(state, options.constants, *state.temperature);
+    const sintering::ViscousResponse response =
+        sintering::viscous_response(state, options.constants, *state.temperature, stop_if_requested);
     summary["sintering_stress"] = response.mean_sintering_stress();
     summary["bulk_viscosity"] = response.bulk_viscosity();
     summary["shear_viscosity"] = response.shear_viscosity();
@@ -53,7 +59,8 @@ void add_viscosities(Json& summary, const State& state, const Options& options) 
 }
 
 std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options& options) {
-    const sintering::SinteringSettings settings = options.settings(state.time);
+    sintering::SinteringSettings settings = options.settings(state.time);
+    settings.poll = stop_if_requested;
     if (options.method == "explicit") return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
     return std::make_unique<sintering::ImplicitSintering>(std::move(state), settings);
 }
@@ -73,10 +80,14 @@ class Sintered {
         wanted_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
     }
 
-    /// Steps to the end; false if a stop was requested on the way.
+    /// Steps to the end; false if a stop was requested on the way: the step that it interrupts is not taken.
     bool run() {
         while (!wanted_.done(method_->time()) && !full()) {
-            step();
+            try {
+                step();
+            } catch (const io::Interrupted&) {
+                if (!sinks_.checkpoint.wanted()) write_state(last_summary_);
+            }
             if (cli::stop_requested()) {
                 if (sinks_.checkpoint.wanted()) write_checkpoint(false);
                 return false;
@@ -117,13 +128,14 @@ class Sintered {
             throw Error("at " + Json(record.time).dump() + " s particles have " + Json(record.contacts.coordination_number).dump() +
                         " contacts and overlap by " + Json(record.contacts.mean_overlap_ratio).dump() +
                         " of their radii in the mean: the packing has shrunk into itself in a box that stays empty");
-        const Json summary = summary_of(record, options_.method);
+        const Json summary = last_summary_ = summary_of(record, options_.method);
         if (sinks_.history) sinks_.history->write(summary);
         sinks_.progress.detail(summary);
         if (density <= validity_limit && record.relative_density > validity_limit)
             sinks_.warn("above a relative density of 0.9 grains grow, which this model leaves out");
         sinks_.progress.show(wanted_.fraction(record.relative_density, record.time),
                              "relative density " + Json(std::round(1e4 * record.relative_density) / 1e4).dump());
+        // A signal that comes after the last look at it: this step's state is the last.
         const bool last_of_all = cli::stop_requested() && !sinks_.checkpoint.wanted();
         if (wanted_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
     }
@@ -145,6 +157,7 @@ class Sintered {
     const Sinks& sinks_;
     Progressed progressed_;
     Wanted wanted_;
+    Json last_summary_ = Json::object();
     std::unique_ptr<sintering::SinteringMethod> method_;
 };
 

@@ -1,0 +1,139 @@
+// incomplete_cholesky.cpp: the block factorisation and its two triangular solves, range by range.
+#include "linalg/incomplete_cholesky.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <utility>
+
+namespace kiln::linalg {
+
+namespace {
+
+/// Part of a diagonal block's trace below which what elimination left of it is rounding of the blocks.
+template <typename Real>
+constexpr double smallest_pivot = sizeof(Real) == 4 ? 1e-6 : 1e-14;
+
+constexpr std::size_t long_row = 64;  // blocks, from which bisection is quicker than going along
+
+}  // namespace
+
+Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace, double floor) {
+    const double least = floor * trace;
+    const double first = pivot(0, 0), second = pivot(1, 1) - pivot(1, 0) * pivot(1, 0) / first;  // D of its L D L^T
+    const double rest = pivot(2, 1) - pivot(2, 0) * pivot(1, 0) / first;
+    const double third = pivot(2, 2) - pivot(2, 0) * pivot(2, 0) / first - rest * rest / second;
+    if (first > least && second > least && third > least) return pivot.inverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(pivot);
+    const Vec3& values = modes.eigenvalues();
+    const Vec3 inverse = (values.array() > least).select(values.cwiseInverse(), 0.0);
+    return modes.eigenvectors() * inverse.asDiagonal() * modes.eigenvectors().transpose();
+}
+
+template <typename Real>
+IncompleteCholesky<Real>::IncompleteCholesky(std::size_t nodes, std::span<const NodeRange> ranges,
+                                             std::span<const std::int32_t> first, std::span<const std::int32_t> second)
+    : first_(first),
+      second_(second),
+      row_begin_(nodes + 1, 0),
+      place_(first.size(), 0),
+      diagonal_(nodes),
+      inverse_(block_size * nodes + 1) {
+    // Edges are sorted by their first node, so the blocks of a row come out sorted by column; parallel edges share a block.
+    std::vector<std::int32_t> last(nodes, -1);  // column of the last block of each row
+    const auto for_edges = [&](const auto& visit) {
+        std::fill(last.begin(), last.end(), -1);
+        for (const NodeRange& range : ranges)
+            for (std::size_t edge = range.begin; edge < range.inside; ++edge) {
+                const auto row = static_cast<std::size_t>(second[edge]);
+                if (first[edge] == second[edge]) continue;
+                visit(edge, row, std::exchange(last[row], first[edge]) != first[edge]);
+            }
+    };
+    for_edges([&](std::size_t, std::size_t row, bool opens) { row_begin_[row + 1] += opens; });
+    for (std::size_t row = 0; row < nodes; ++row) row_begin_[row + 1] += row_begin_[row];
+    column_.resize(row_begin_.back());
+    lower_.resize(block_size * row_begin_.back() + 1);
+    std::vector<std::size_t> next(row_begin_.begin(), row_begin_.end() - 1);
+    for_edges([&](std::size_t edge, std::size_t row, bool opens) {
+        place_[edge] = opens ? next[row]++ : next[row] - 1;
+        column_[place_[edge]] = first[edge];
+    });
+}
+
+template <typename Real>
+template <typename Visit>
+void IncompleteCholesky<Real>::for_shared(std::size_t a, std::size_t a_end, std::size_t b, std::size_t b_end,
+                                          const Visit& visit) const {
+    if (a_end - a > long_row) {  // of a hub with many neighbours: look the few columns of the other row up
+        for (; b < b_end; ++b) {
+            const auto found = std::lower_bound(column_.begin() + static_cast<std::ptrdiff_t>(a),
+                                                column_.begin() + static_cast<std::ptrdiff_t>(a_end), column_[b]);
+            a = static_cast<std::size_t>(found - column_.begin());
+            if (a == a_end) return;
+            if (column_[a] == column_[b]) visit(a, b);
+        }
+        return;
+    }
+    while (a < a_end && b < b_end) {
+        if (column_[a] == column_[b]) {
+            visit(a, b);
+            ++a;
+            ++b;
+        } else {
+            column_[a] < column_[b] ? ++a : ++b;
+        }
+    }
+}
+
+template <typename Real>
+void IncompleteCholesky<Real>::eliminate(const NodeRange& range) {
+    // Row by row: U_ji = A_ji - sum_k L_jk U_ik^T over the columns k that rows j and i share, L_ji = U_ji D_i^-1,
+    // D_j = A_jj - sum_i L_ji U_ji^T.
+    std::vector<Eigen::Matrix3d> upper;  // U of row j
+    for (std::size_t row = range.first_node; row < range.last_node; ++row) {
+        const double trace = diagonal_[row].trace();
+        const std::size_t begin = row_begin_[row], end = row_begin_[row + 1];
+        upper.resize(end - begin);
+        for (std::size_t place = begin; place < end; ++place) {
+            const auto i = static_cast<std::size_t>(column_[place]);
+            Eigen::Matrix3d u = block(lower_, place).template cast<double>();
+            for_shared(begin, place, row_begin_[i], row_begin_[i + 1], [&](std::size_t a, std::size_t b) {
+                u -= upper[a - begin] * block(lower_, b).template cast<double>().transpose();
+            });
+            upper[place - begin] = u;
+            block(lower_, place) = (u * block(inverse_, i).template cast<double>()).template cast<Real>();
+            diagonal_[row] -= block(lower_, place).template cast<double>() * u.transpose();
+        }
+        block(inverse_, row) = pivot_inverse(diagonal_[row], trace, smallest_pivot<Real>).template cast<Real>();
+    }
+}
+
+template <typename Real>
+void IncompleteCholesky<Real>::apply(const NodeRange& range, const Quad<Real>* r, Quad<Real>* z) const {
+    // The fourth number of a column is the next column's first: what it brings into spare places is cleared in the end.
+    for (std::size_t row = range.first_node; row < range.last_node; ++row) {  // L y = r
+        Quad<Real> y = r[row];
+        for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place) {
+            const Real* l = &lower_[block_size * place];
+            const Quad<Real> known = z[column_[place]];
+            y -= load(l) * all<0>(known) + load(l + 3) * all<1>(known) + load(l + 6) * all<2>(known);
+        }
+        z[row] = y;
+    }
+    for (std::size_t row = range.first_node; row < range.last_node; ++row) {  // D
+        const Real* d = &inverse_[block_size * row];
+        z[row] = load(d) * all<0>(z[row]) + load(d + 3) * all<1>(z[row]) + load(d + 6) * all<2>(z[row]);
+    }
+    for (std::size_t row = range.last_node; row-- > range.first_node;) {  // L^T z = y
+        const Quad<Real> known = z[row] = only_vector(z[row]);
+        for (std::size_t place = row_begin_[row]; place < row_begin_[row + 1]; ++place) {
+            const Real* l = &lower_[block_size * place];
+            z[column_[place]] -= transposed_product(load(l), load(l + 3), load(l + 6), known);
+        }
+    }
+}
+
+template class IncompleteCholesky<float>;
+template class IncompleteCholesky<double>;
+
+}  // namespace kiln::linalg
