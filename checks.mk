@@ -42,7 +42,7 @@ $(BUILD)/tidy/%.ok: %.cpp .clang-tidy
 
 # The preconditioner rounds in another order at -O2, so it is compiled alike; docs/reliability.md says what that means.
 same-bytes: all                 ## build with -O2 into build-O2 and compare every output of the chain with that of -O3
-	$(MAKE) BUILD=build-O2 build-O2/lib/sintering/preconditioner.o
+	$(MAKE) BUILD=build-O2 build-O2/lib/linalg/incomplete_cholesky.o
 	$(MAKE) BUILD=build-O2 OPTIMISE="-O2 -DNDEBUG" all
 	BUILD=$(abspath $(BUILD)) tests/chain.sh $(BUILD)/chain
 	BUILD=$(abspath build-O2) tests/chain.sh build-O2/chain

@@ -27,8 +27,8 @@ inline Vec3 pair_vector(const Box& box, std::span<const Vec3> position, const Pa
     return position[static_cast<std::size_t>(pair.j)] + box.shift(pair.image) - position[static_cast<std::size_t>(pair.i)];
 }
 
-/// Overlap of two spheres, m, negative for a gap. A gap within the rounding of centres, 1e-9 of the smaller radius, is none: spheres
-/// that were placed to touch do.
+/// Overlap of two spheres, m, negative for a gap. A gap within the rounding of centres, 1e-9 of the smaller radius, is none:
+/// spheres that were placed to touch do.
 inline double contact_overlap(double first, double second, double distance) {
     constexpr double touching_gap = 1e-9;
     const double overlap = first + second - distance;

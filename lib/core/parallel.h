@@ -18,7 +18,8 @@ void for_rows(std::size_t rows, const Work& work, std::size_t worth = worth_thre
     for (std::int64_t row = 0; row < count; ++row) work(static_cast<std::size_t>(row));
 }
 
-/// Calls work(chunk) for each chunk, in any order, handed out as threads are free; fewest: chunks from which threads share the work.
+/// Calls work(chunk) for each chunk, in any order, handed out as threads are free; fewest: chunks from which threads share the
+/// work.
 template <typename Work>
 void for_chunks(std::size_t chunks, const Work& work, std::size_t fewest = 2) {
     const auto count = static_cast<std::int64_t>(chunks);

@@ -48,8 +48,8 @@ class EnergyError {
 ///   double turn(double ratio)     p = z + ratio p, q = K p; gives p . q
 /// done(const CgProgress&) is asked before the first iteration and after each one; it may throw to end a solve from outside.
 ///
-/// K is symmetric positive semidefinite with b in its range, M symmetric positive definite on it. Throws Error where a number is not
-/// finite. Saad, Iterative methods for sparse linear systems, 2003, algorithm 9.1.
+/// K is symmetric positive semidefinite with b in its range, M symmetric positive definite on it. Throws Error where a number is
+/// not finite. Saad, Iterative methods for sparse linear systems, 2003, algorithm 9.1.
 template <typename System, typename Done>
 CgProgress conjugate_gradient(System& system, const Done& done) {
     CgProgress progress;

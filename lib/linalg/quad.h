@@ -75,7 +75,8 @@ Quad<Real> sum(Quad<Real> a) {
 template <typename Real>
 Quad<Real> transposed_product(Quad<Real> a, Quad<Real> b, Quad<Real> c, Quad<Real> v) {
     using Lanes = typename Quad<Real>::Lanes;
-    const Lanes low = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 1, 5), high = __builtin_shufflevector(a.lanes, b.lanes, 2, 6, 3, 7);
+    const Lanes low = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 1, 5),
+                high = __builtin_shufflevector(a.lanes, b.lanes, 2, 6, 3, 7);
     const Quad<Real> x{__builtin_shufflevector(low, c.lanes, 0, 1, 4, 7)}, y{__builtin_shufflevector(low, c.lanes, 2, 3, 5, 7)};
     const Quad<Real> z{__builtin_shufflevector(high, c.lanes, 0, 1, 6, 7)};
     return x * all<0>(v) + y * all<1>(v) + z * all<2>(v);

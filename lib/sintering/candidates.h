@@ -18,8 +18,8 @@ class Candidates {
         : body_(packing), kinetics_(kinetics), constants_(constants) {}
 
     /// Chooses from the packing's list by two motions that the step may turn out to make.
-    /// diffusion: integral of Delta over the step for each pair of materials, m5/N. keep: what was chosen last stays chosen, so that
-    /// choosing again and again comes to an end.
+    /// diffusion: integral of Delta over the step for each pair of materials, m5/N. keep: what was chosen last stays chosen, so
+    /// that choosing again and again comes to an end.
     void choose(const Motion& guess, const Motion& other, const std::vector<double>& diffusion, bool keep = false);
 
     /// True if no pair of the packing's list that was not chosen touches after the motion, or so little that it may begin with the

@@ -75,7 +75,8 @@ ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, con
     const Vec3 opening = velocity_[j] - velocity_[i] + strain_rate_.cwiseProduct(vector);
     const std::size_t kind = kinetics_.row(body_.particles(), pair);
     const double reduced = physics::reduced_radius(first, second);
-    result.viscosity = physics::normal_viscosity_factor(settings_.constants, reduced) * physics::viscosity_shape(overlap) / diffusion[kind];
+    result.viscosity =
+        physics::normal_viscosity_factor(settings_.constants, reduced) * physics::viscosity_shape(overlap) / diffusion[kind];
     const double shear = physics::tangential_viscosity(settings_.constants, overlap, reduced) / diffusion[kind];
     const double along = normal.dot(opening);
     result.force =

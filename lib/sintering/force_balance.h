@@ -10,7 +10,8 @@ namespace kiln::sintering {
 
 /// The largest force left on any particle, or on any cluster of the coarse spaces, over what the contacts of that particle, or the
 /// contacts of that cluster with others, exert if all add up. exerted: size of each pair's force; left: what is left on each
-/// particle, in the same unit. A particle on which next to nothing acts is held against a millionth of what acts on one in the mean.
+/// particle, in the same unit. A particle on which next to nothing acts is held against a millionth of what acts on one in the
+/// mean.
 double max_imbalance(std::span<const Pair> pairs, std::span<const double> exerted, std::span<const RigidClusters> coarse,
                      const Motion& left);
 

@@ -48,7 +48,8 @@ Kinetics::Kinetics(const State& state, const physics::Schedule& schedule)
 void Kinetics::find_rigid(const Particles& particles) {
     std::vector<bool> used(materials_, false);
     for (const std::int32_t material : particles.material) used[static_cast<std::size_t>(material)] = true;
-    for (std::size_t pair = 0; pair < energy_.size(); ++pair) present_.push_back(used[pair / materials_] && used[pair % materials_]);
+    for (std::size_t pair = 0; pair < energy_.size(); ++pair)
+        present_.push_back(used[pair / materials_] && used[pair % materials_]);
     std::vector<double> all(energy_.size(), 0.0);  // what each pair diffuses over the schedule
     bool any = false;
     for (std::size_t pair = 0; pair < all.size(); ++pair) {

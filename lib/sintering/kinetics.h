@@ -57,8 +57,8 @@ class Kinetics {
     /// that does not diffuse.
     std::vector<double> slowness_at(double temperature) const;
 
-    /// Integral of Delta over time from `from` to `until` (s) for each pair of materials, m5/N. That of a pair which is not rigid is
-    /// at least rigid_fraction of the largest: a firing may have spans in which a pair is slower than that.
+    /// Integral of Delta over time from `from` to `until` (s) for each pair of materials, m5/N. That of a pair which is not rigid
+    /// is at least rigid_fraction of the largest: a firing may have spans in which a pair is slower than that.
     std::vector<double> diffusion_over(double from, double until) const;
 
     /// Equivalent time between two times, s.

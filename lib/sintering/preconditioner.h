@@ -13,9 +13,9 @@ namespace kiln::sintering {
 
 /// The sum of an incomplete factorisation of the network and, for each coarse space, one of the network of its clusters.
 ///
-/// An incomplete factorisation takes the soft motions of a group that stiff contacts tie together, its translation and its share in
-/// the strain of the box, for as stiff as the contacts in it. As one node of a coarse network the group is held by its soft contacts
-/// alone. (Additive Schwarz method with a coarse space; Smith, Bjorstad & Gropp, Domain Decomposition, 1996, chapter 2.)
+/// An incomplete factorisation takes the soft motions of a group that stiff contacts tie together, its translation and its share
+/// in the strain of the box, for as stiff as the contacts in it. As one node of a coarse network the group is held by its soft
+/// contacts alone. (Additive Schwarz method with a coarse space; Smith, Bjorstad & Gropp, Domain Decomposition, 1996, chapter 2.)
 template <typename Real>
 class Preconditioner {
    public:

@@ -45,7 +45,8 @@ RigidClusters::RigidClusters(const Box& box, std::span<const Vec3> position, std
         if (member < 0) member = static_cast<std::int32_t>(row);
     }
     for (std::size_t row = 0; row < count; ++row)
-        if (first[static_cast<std::size_t>(root[row])] == static_cast<std::int32_t>(row)) first_.push_back(static_cast<std::int32_t>(row));
+        if (first[static_cast<std::size_t>(root[row])] == static_cast<std::int32_t>(row))
+            first_.push_back(static_cast<std::int32_t>(row));
     const auto size_of = [&](std::int32_t row) {
         const std::int32_t size = members[static_cast<std::size_t>(root[static_cast<std::size_t>(row)])];
         return size < large_cluster ? 0 : size;

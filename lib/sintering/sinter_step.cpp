@@ -16,7 +16,7 @@ constexpr int max_newton = 60;
 constexpr int max_searches = 12;
 constexpr int max_conjugate_gradients = 5000;
 constexpr double rounding = 1e-6;          // error of a motion below which a direction that leads nowhere is made of rounding
-constexpr double overshoot = 0.5;          // slope left at the end of a Newton step, relative to its start, that asks for a line search
+constexpr double overshoot = 0.5;  // slope left at the end of a Newton step, relative to its start, that asks for a line search
 constexpr double min_tangent = 0.1;        // of the tangent at a pair's own end of the step
 constexpr double max_linear = 0.1;         // error of the linear solves, loosest and tightest
 constexpr double min_linear = 1e-3;
@@ -154,7 +154,8 @@ void SinterStep::start_limits() {
         const PairStep& pair = step_[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
-        limits_.add(row, pair.limit, std::max(0.0, rows_[row].drive - pair.cubic * physics::viscosity_integral(start, reached)));  // as if alone
+        limits_.add(row, pair.limit,
+                    std::max(0.0, rows_[row].drive - pair.cubic * physics::viscosity_integral(start, reached)));  // as if alone
     }
 }
 

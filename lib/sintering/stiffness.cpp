@@ -15,7 +15,8 @@ Stiffness<Real>::Stiffness(const ContactNetwork& network)
         high = high.cwiseMax(network.position(row));
     }
     const Vec3 middle = 0.5 * (low + high);
-    for (std::size_t row = 0; row < network.particles(); ++row) position_[row] = linalg::quad<Real>(Vec3(network.position(row) - middle));
+    for (std::size_t row = 0; row < network.particles(); ++row)
+        position_[row] = linalg::quad<Real>(Vec3(network.position(row) - middle));
 }
 
 template <typename Real>
@@ -46,7 +47,8 @@ void Stiffness<Real>::multiply_range(std::size_t begin, std::size_t end, const Q
 }
 
 template <typename Real>
-Vec3 Stiffness<Real>::multiply_crossing(const ContactNetwork::Chunk& chunk, const Vec3& strain, const Quad<Real>* total, Quad<Real>* forces) const {
+Vec3 Stiffness<Real>::multiply_crossing(const ContactNetwork::Chunk& chunk, const Vec3& strain, const Quad<Real>* total,
+                                        Quad<Real>* forces) const {
     Vec3 work = Vec3::Zero();
     for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
         const auto i = static_cast<std::size_t>(network_.first[entry]), j = static_cast<std::size_t>(network_.second[entry]);
@@ -62,7 +64,8 @@ Vec3 Stiffness<Real>::multiply_crossing(const ContactNetwork::Chunk& chunk, cons
 }
 
 template <typename Real>
-Vec3 Stiffness<Real>::multiply(std::size_t index, const Vec3& strain, const std::vector<Quad<Real>>& total, QuadMotion<Real>& forces) const {
+Vec3 Stiffness<Real>::multiply(std::size_t index, const Vec3& strain, const std::vector<Quad<Real>>& total,
+                               QuadMotion<Real>& forces) const {
     const ContactNetwork::Chunk& chunk = network_.chunks()[index];
     Quad<Real>* target = forces.displacement.data();
     std::fill(target + chunk.first_particle, target + chunk.last_particle, Quad<Real>{});

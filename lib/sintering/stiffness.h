@@ -64,7 +64,8 @@ class Stiffness {
     }
     template <bool AddFirst, bool AddSecond>
     void multiply_range(std::size_t begin, std::size_t end, const Quad<Real>* total, Quad<Real>* forces) const;
-    Vec3 multiply_crossing(const ContactNetwork::Chunk& chunk, const Vec3& strain, const Quad<Real>* total, Quad<Real>* forces) const;
+    Vec3 multiply_crossing(const ContactNetwork::Chunk& chunk, const Vec3& strain, const Quad<Real>* total,
+                           Quad<Real>* forces) const;
 
     const ContactNetwork& network_;
     std::vector<Quad<Real>> position_;     // m, from the middle of the particles' extent

@@ -42,7 +42,8 @@ Contacts contacts_of(const SinteringBody& body, const Kinetics& kinetics, const 
         contacts.branch.push_back(pair_vector(body.box(), clusters.places(), seen.pair));
         contacts.normals.emplace_back((seen.reversed ? -1.0 : 1.0) * vector.normalized());
         contacts.force.push_back(physics::sintering_force(constants, reduced, kinetics.surface_energy(kind)));
-        contacts.normal.push_back(physics::normal_viscosity_factor(constants, reduced) * physics::viscosity_shape(aged) * slowness[kind]);
+        contacts.normal.push_back(physics::normal_viscosity_factor(constants, reduced) * physics::viscosity_shape(aged) *
+                                  slowness[kind]);
         contacts.tangential.push_back(physics::tangential_viscosity(constants, aged, reduced) * slowness[kind]);
         contacts.slowness.push_back(slowness[kind]);
     }

@@ -63,14 +63,15 @@ QuadMotion<Real> product(const Stiffness<Real>& stiffness, const QuadMotion<Real
 template <typename Real>
 double dot(const QuadMotion<Real>& a, const QuadMotion<Real>& b) {
     linalg::WideQuad sums;
-    for (std::size_t row = 0; row < a.displacement.size(); ++row) linalg::add_product(a.displacement[row], b.displacement[row], sums);
+    for (std::size_t row = 0; row < a.displacement.size(); ++row)
+        linalg::add_product(a.displacement[row], b.displacement[row], sums);
     return sums.sum() + a.strain.dot(b.strain);
 }
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("the stiffness of a network times a motion is the sum of its pairs' forces, and its spare places stay empty", Real,
-                   float, double) {
+TEST_CASE_TEMPLATE("the stiffness of a network times a motion is the sum of its pairs' forces, and its spare places stay empty",
+                   Real, float, double) {
     const Sample sample(5000, 0.05);  // three chunks
     const ContactNetwork network(sample.box, sample.position, sample.pairs);
     Stiffness<Real> stiffness(network);
@@ -107,7 +108,8 @@ TEST_CASE("the stiffness is symmetric and its preconditioner too, and positive")
     const ContactNetwork network(sample.box, sample.position, sample.pairs);
     Stiffness<float> stiffness(network);
     fill(stiffness, network, sample);
-    const QuadMotion<float> x = random_motion<float>(sample.position.size(), 1), y = random_motion<float>(sample.position.size(), 2);
+    const QuadMotion<float> x = random_motion<float>(sample.position.size(), 1),
+                            y = random_motion<float>(sample.position.size(), 2);
     const double scale = std::sqrt(dot(x, product(stiffness, x)) * dot(y, product(stiffness, y)));
     CHECK(std::abs(dot(x, product(stiffness, y)) - dot(y, product(stiffness, x))) < 1e-6 * scale);
 
