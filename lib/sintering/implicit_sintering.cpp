@@ -125,7 +125,7 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_share : alone_share),
                                 .second_tolerance = closely,
-                                .poll = settings_.poll};
+                                .stop = settings_.stop};
     Problem problem{diffusion, clusters, settings, std::nullopt};
     problem.take(body_, candidates_);
     Trial trial;

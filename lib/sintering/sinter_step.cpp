@@ -244,7 +244,7 @@ bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
             if (iteration < max_factorisations) solver->factorise(branch_);
             // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
             return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
-                if (settings_.poll) settings_.poll();
+                throw_if_stopped(settings_.stop);
                 const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
                 const double goal = std::clamp(size, min_linear, max_linear);
                 return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||

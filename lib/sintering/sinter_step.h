@@ -7,12 +7,12 @@
 // cube is the exact integral of the viscosity over the overlap: an isolated pair is exact for a step of any length.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include "core/stop.h"
 #include "sintering/closing_limits.h"
 #include "sintering/contact_network.h"
 #include "sintering/tangent_solver.h"
@@ -38,7 +38,7 @@ struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
-    std::function<void()> poll;                       // called between iterations; may throw to end the step; none: never
+    StopRequest stop;                                 // asked between iterations; the step then throws Interrupted
 };
 
 struct StepReport {

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
-#include <functional>
 
 #include "core/contacts.h"
+#include "core/stop.h"
 #include "sintering/kinetics.h"
 #include "sintering/sintering_body.h"
 #include "physics/sinter_contact.h"
@@ -22,7 +22,7 @@ struct SinteringSettings {
     double solver_tolerance = 3e-3;  // relative error of a step's motion in the energy norm
     bool second_order = true;        // of the implicit step
     double mass_scaling = 1e20;      // of the explicit method: inertial over real mass
-    std::function<void()> poll;  // called several times a second; may throw to end a step, which then leaves the state as it was
+    StopRequest stop;  // asked during steps: Interrupted then leaves the state as it was before the step
 };
 
 /// What one step did; also the keys of the density history.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sintering/force_balance.h"
 #include "sintering/kinetics.h"
@@ -82,7 +83,7 @@ class Response {
     };
 
     /// The motion in which nothing but the box holds the particles against the strain rate.
-    Field under(const Vec3& strain_rate, const std::function<void()>& poll) {
+    Field under(const Vec3& strain_rate, const StopRequest& stop) {
         Field field{Motion(network_.particles()), Motion(network_.particles())};
         field.motion.strain = strain_rate;
         std::vector<double> exerted(contacts_.pairs.size());
@@ -96,20 +97,21 @@ class Response {
             scale += force.dot(motion);
         }
         Motion unbalanced(network_.particles()), correction(network_.particles());
-        for (int pass = 0; pass < max_passes; ++pass) {
+        double sufficient = accuracy * accuracy * scale;
+        for (int pass = 0; pass < max_passes; ++pass, sufficient *= sharpening) {
             find_forces(field);
             unbalanced.displacement = field.forces.displacement;
             field.converged = false;
             for (double& component : unbalanced.displacement) component = -component;
             const linalg::CgProgress solve = solver_.solve(
                 Eigen::Matrix3d::Zero(), unbalanced, correction, [&](const linalg::CgProgress& progress) {
-                    if (poll) poll();
-                    return progress.error2 <= accuracy * accuracy * scale || progress.iterations >= max_iterations;
+                    throw_if_stopped(stop);
+                    return progress.error2 <= sufficient || progress.iterations >= max_iterations;
                 });
             field.iterations += solve.iterations;
             add(network_, 1.0, correction, field.motion);
             find_forces(field);
-            field.converged = solve.error2 <= accuracy * accuracy * scale &&
+            field.converged = solve.error2 <= sufficient &&
                               max_imbalance(contacts_.pairs, exerted, coarse_, field.forces) <= balance;
             if (field.converged) break;
         }
@@ -131,7 +133,8 @@ class Response {
     double product(const Motion& a, const Motion& b) const { return dot(network_, a, b); }
 
    private:
-    static constexpr int max_passes = 3;
+    static constexpr int max_passes = 8;
+    static constexpr double sharpening = 1e-2;  // of the square of the error, where soft contacts beside stiff ones are unbalanced
 
     void find_forces(Field& field) {
         network_.gather(field.motion, field.forces, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
@@ -153,7 +156,7 @@ class Response {
 }  // namespace
 
 ViscousResponse viscous_response(const State& state, const physics::ContactConstants& constants, double temperature,
-                                 const std::function<void()>& poll) {
+                                 const StopRequest& stop) {
     for (const bool axis : state.box.periodic)
         if (!axis) throw Error("viscosities are those of a box that is periodic along all axes");
     const SinteringBody body(state, Faces::as_given);
@@ -162,25 +165,32 @@ ViscousResponse viscous_response(const State& state, const physics::ContactConst
     const Contacts contacts = contacts_of(body, kinetics, constants, kinetics.slowness_at(temperature), clusters);
     ViscousResponse response;
     response.locked = clusters.locked();
+    for (int axis = 0; axis < 3; ++axis)
+        if (response.locked[static_cast<std::size_t>(axis)]) {
+            response.viscosity.row(axis).setConstant(std::numeric_limits<double>::infinity());
+            response.viscosity.col(axis).setConstant(std::numeric_limits<double>::infinity());
+        }
     if (contacts.pairs.empty()) return response;
 
     Response packing(body.box(), clusters.places(), contacts);
-    std::vector<Response::Field> fields;
+    std::vector<int> free;
+    std::vector<Response::Field> fields;  // of the free axes
     for (int axis = 0; axis < 3; ++axis) {
-        fields.push_back(packing.under(Vec3::Unit(axis), poll));
+        if (response.locked[static_cast<std::size_t>(axis)]) continue;
+        free.push_back(axis);
+        fields.push_back(packing.under(Vec3::Unit(axis), stop));
         response.conjugate_gradients += fields.back().iterations;
         response.converged = response.converged && fields.back().converged;
     }
     // The work of one field's forces in another's motion: symmetric and positive by construction, and its error is the product of
     // the errors of both fields. The sintering stress is the work of the sintering forces in the same motions (reciprocity).
     const double volume = body.box().volume();
-    for (int row = 0; row < 3; ++row) {
-        const Motion& motion = fields[static_cast<std::size_t>(row)].motion;
-        response.sintering_stress[row] = packing.work_of_sintering(motion) / volume;
-        for (int column = 0; column < 3; ++column) {
-            const Response::Field &a = fields[static_cast<std::size_t>(row)], &b = fields[static_cast<std::size_t>(column)];
-            const double work = 0.5 * (packing.product(a.motion, b.forces) + packing.product(b.motion, a.forces));
-            response.viscosity(row, column) = work * (packing.unit() / volume) / kinetics.fastest();
+    for (std::size_t row = 0; row < free.size(); ++row) {
+        response.sintering_stress[free[row]] = packing.work_of_sintering(fields[row].motion) / volume;
+        for (std::size_t column = 0; column < free.size(); ++column) {
+            const double work = 0.5 * (packing.product(fields[row].motion, fields[column].forces) +
+                                       packing.product(fields[column].motion, fields[row].forces));
+            response.viscosity(free[row], free[column]) = work * (packing.unit() / volume) / kinetics.fastest();
         }
     }
     return response;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/neighbours.h"
+#include "sintering/explicit_sintering.h"
 #include "sintering/implicit_sintering.h"
 #include "physics/diffusion.h"
 #include "physics/materials.h"

@@ -8,6 +8,7 @@
 #include "tests/physics/sintering_cases.h"
 
 using namespace kiln;
+using namespace kiln::sintering;
 using namespace sintering_cases;
 
 TEST_CASE("an isolated pair closes by the pair law, in steps of any length, from no overlap at all, equal or not") {
@@ -160,4 +161,49 @@ TEST_CASE("coincident centres and missing data are refused by name") {
     poor.materials[0].surface_energy.reset();
     CHECK_THROWS_WITH_AS(sintering::ImplicitSintering(std::move(poor), settings()), "material 'alumina' has no surface_energy",
                          Error);
+}
+
+TEST_CASE("spans in which nothing moves are one step, and the state stays as it was to the last digit") {
+    SinteringSettings cold = settings();
+    cold.schedule = physics::Schedule({{0.0, 298.15}, {3600.0, 573.15}, {7200.0, 298.15}});
+    const State start = random_packing(100, 0.5, 1.0);
+    ImplicitSintering sintering(start, cold);
+    const State before = sintering.state();
+    int steps = 0;
+    for (; sintering.time() < 7200.0; ++steps) REQUIRE(sintering.advance(7200.0, endless).converged);
+    CHECK(steps < 10);
+    CHECK(deviation(relative_density(sintering.state()), relative_density(before)) < 1e-12);
+    ImplicitSintering coarse(random_packing(100, 0.5, 1e5), settings());  // 10 mm
+    const State large = coarse.state();
+    while (coarse.time() < 3600.0) REQUIRE(coarse.advance(3600.0, endless).converged);
+    CHECK(relative_density(coarse.state()) == relative_density(large));
+}
+
+TEST_CASE("spheres that are placed to touch do: a lattice with gaps of rounding sinters as one without overlap") {
+    const double radius = 50e-9, edge = 2.0 * std::numbers::sqrt2 * radius, time = 70.0;
+    const double half = 0.5 * edge;
+    State lattice = state_of({{0.0, 0.0, 0.0}, {half, half, 0.0}, {half, 0.0, half}, {0.0, half, half}},
+                             std::vector<double>(4, radius), Vec3::Constant(edge * (1.0 + 1e-11)), true);
+    const State end = sintered(lattice, time);
+    const double s = std::cbrt(0.84375 * diffusion() * surface_energy() * time / std::pow(radius, 4));  // h/2R, physics.md 6
+    CHECK(deviation(relative_density(end), relative_density(lattice) / std::pow(1.0 - s, 3)) < 1e-4);
+}
+
+TEST_CASE("a step that is asked to stop leaves the state as it was") {
+    SinteringSettings wanted = settings();
+    int asked = 0;
+    wanted.stop = [&] { return ++asked > 3; };
+    ImplicitSintering sintering(random_packing(100, 0.5, 1.0), wanted);
+    const State before = sintering.state();
+    CHECK_THROWS_AS(for (;;) sintering.advance(60.0, endless), Interrupted);
+    CHECK(sintering.time() == before.time);
+    CHECK(sintering.state().particles.position == before.particles.position);
+}
+
+TEST_CASE("a pressure that has no face to act on is refused by every method") {
+    SinteringSettings wanted = settings();
+    wanted.pressure = Vec3(1e6, 0.0, 0.0);
+    wanted.fixed = {true, false, false};
+    CHECK_THROWS_WITH_AS(ImplicitSintering(random_packing(20, 0.5, 1.0), wanted), doctest::Contains("moves nothing"), Error);
+    CHECK_THROWS_WITH_AS(ExplicitSintering(random_packing(20, 0.5, 1.0), wanted), doctest::Contains("moves nothing"), Error);
 }

@@ -24,9 +24,6 @@ constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a bo
 
 using sintering::triple;
 
-void stop_if_requested() {
-    if (cli::stop_requested()) throw io::Interrupted();
-}
 
 Json summary_of(const sintering::StepRecord& record, const std::string& method) {
     Json summary{{"method", method},
@@ -48,19 +45,34 @@ Json summary_of(const sintering::StepRecord& record, const std::string& method) 
     return summary;
 }
 
-void add_viscosities(Json& summary, const State& state, const Options& options) {
+/// A number as JSON; null where it is not finite.
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// The viscosities of a state into its summary, and what is to be said of them.
+std::vector<std::string> add_viscosities(Json& summary, const State& state, const Options& options) {
     const sintering::ViscousResponse response =
-        sintering::viscous_response(state, options.constants, *state.temperature, stop_if_requested);
-    summary["sintering_stress"] = response.mean_sintering_stress();
-    summary["bulk_viscosity"] = response.bulk_viscosity();
-    summary["shear_viscosity"] = response.shear_viscosity();
-    summary["viscosity"] = {triple(response.viscosity.row(0)), triple(response.viscosity.row(1)),
-                            triple(response.viscosity.row(2))};
+        sintering::viscous_response(state, options.constants, *state.temperature, cli::stop_requested);
+    const bool flows = response.flows();
+    summary["sintering_stress"] = flows ? Json(response.mean_sintering_stress()) : Json(nullptr);
+    summary["bulk_viscosity"] = finite(response.bulk_viscosity());
+    summary["shear_viscosity"] = flows ? finite(response.shear_viscosity()) : Json(nullptr);
+    for (int row = 0; row < 3; ++row)
+        summary["viscosity"].push_back({finite(response.viscosity(row, 0)), finite(response.viscosity(row, 1)),
+                                        finite(response.viscosity(row, 2))});
+    summary["viscosity_converged"] = response.converged;
+    std::vector<std::string> remarks;
+    if (!response.converged) remarks.push_back("the viscosities did not converge");
+    if (!flows) remarks.push_back("particles that do not diffuse span the box, which does not flow: its viscosity is null");
+    const double largest = response.viscosity.diagonal().maxCoeff();
+    if (flows && largest > sintering::max_meaningful_viscosity)
+        remarks.push_back("at " + Json(*state.temperature).dump() + " K the viscosity is " + Json(largest).dump() +
+                          " Pa s: nothing flows that could be measured, ask for it at a temperature of the firing");
+    return remarks;
 }
 
 std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options& options) {
     sintering::SinteringSettings settings = options.settings(state.time);
-    settings.poll = stop_if_requested;
+    settings.stop = cli::stop_requested;
     if (options.method == "explicit") return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
     return std::make_unique<sintering::ImplicitSintering>(std::move(state), settings);
 }
@@ -80,13 +92,23 @@ class Sintered {
         wanted_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
     }
 
+    /// What is to be known before the first step.
+    void warn() const {
+        for (const sintering::Kinetics::SlowPair& pair : method_->kinetics().taken_as_rigid())
+            sinks_.warn("contacts of " + pair.first + " and " + pair.second + " diffuse " + Json(pair.fraction).dump() +
+                        " times as fast as the fastest and count as rigid, as all below " +
+                        Json(sintering::Kinetics::rigid_fraction).dump() + " do");
+        if (method_->packing().statistics().coordination_number == 0.0)
+            sinks_.warn("no particles touch: nothing sinters until they do");
+    }
+
     /// Steps to the end; false if a stop was requested on the way: the step that it interrupts is not taken.
     bool run() {
         while (!wanted_.done(method_->time()) && !full()) {
             try {
                 step();
-            } catch (const io::Interrupted&) {
-                if (!sinks_.checkpoint.wanted()) write_state(last_summary_);
+            } catch (const Interrupted&) {
+                if (!sinks_.checkpoint.wanted()) write_state(last_summary_, false);
             }
             if (cli::stop_requested()) {
                 if (sinks_.checkpoint.wanted()) write_checkpoint(false);
@@ -140,7 +162,8 @@ class Sintered {
         if (wanted_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
     }
 
-    void write_state(Json summary) {
+    /// reported: with what --report asks for.
+    void write_state(Json summary, bool reported = true) {
         State reached = method_->state();
         summary["steps"] = method_->steps();
         if (options_.method == "implicit") {
@@ -148,7 +171,10 @@ class Sintered {
             summary["conjugate_gradients"] = progressed_.conjugate_gradients;
             summary["converged"] = progressed_.converged;
         }
-        if (options_.report == "viscosity") add_viscosities(summary, reached, options_);
+        if (reported && options_.report == "viscosity") {
+            for (const std::string& remark : add_viscosities(summary, reached, options_)) sinks_.warn(remark);
+            progressed_.converged = progressed_.converged && summary["viscosity_converged"].get<bool>();
+        }
         reached.history.push_back(sinks_.entry(summary));
         sinks_.states.write(std::move(reached));
     }
@@ -176,6 +202,7 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
             throw Error("the checkpoint is of another input than document " + std::to_string(document + 1));
         last = std::make_unique<Sintered>(std::move(*state), options, sinks, progressed);
         if (taken_up) last->take_up(sinks.checkpoint.state());
+        last->warn();
         const bool whole = last->run();
         converged = last->progressed().converged;
         if (whole && (sinks.checkpoint.wanted() || !cli::stop_requested())) continue;
