@@ -60,7 +60,7 @@ void size_and_shape(const char* what, double particles, double slenderness) {
     const double setup = seconds_since(start);
     Vector displacement;
     const Clock::time_point begin = Clock::now();
-    const SolveReport report = solver.solve(load, displacement, 1e-8);
+    const linalg::SolveReport report = solver.solve(load, displacement, 1e-8);
     const Json line{{"bench", "mechanics"}, {"case", what}, {"particles", network.nodes()}, {"bonds", network.bonds()},
                     {"slenderness", slenderness}, {"iterations", report.iterations}, {"residual", report.residual},
                     {"setup_seconds", setup}, {"solve_seconds", seconds_since(begin)},
@@ -80,7 +80,7 @@ void tolerances() {
     for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10}) {
         Vector displacement;
         const Clock::time_point begin = Clock::now();
-        const SolveReport report = solver.solve(load, displacement, tolerance);
+        const linalg::SolveReport report = solver.solve(load, displacement, tolerance);
         const double seconds = seconds_since(begin);
         Vector difference = exact;
         add(-1.0, displacement, difference);

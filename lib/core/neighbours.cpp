@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "core/grouping.h"
 
 namespace kiln {
 namespace {
@@ -49,7 +52,8 @@ struct Frame {
 struct Grid {
     std::array<std::int64_t, 3> cells;
     double largest_reach;            // m
-    std::vector<std::size_t> begin;  // first entry of each place in the table, and the end
+    std::uint64_t places = 0;        // of the table
+    std::vector<std::size_t> begin;  // first entry of each place, and the end
     std::vector<Entry> entries;
 
     std::uint64_t index(const Cell& cell) const {
@@ -57,7 +61,6 @@ struct Grid {
     }
 
     std::size_t place(std::uint64_t cell) const {
-        const std::uint64_t places = begin.size() - 1;
         return cell < places ? cell : cell % places;
     }
 };
@@ -95,13 +98,12 @@ void number_cells(Grid& grid, const Frame& frame) {
 /// Puts the entries into the order of their places in the table; within a place the rows stay ascending.
 void sort_into_places(Grid& grid) {
     const auto all_cells = static_cast<std::size_t>(grid.cells[0] * grid.cells[1] * grid.cells[2]);
-    grid.begin.assign(std::min(all_cells, 4 * grid.entries.size() + 1) + 1, 0);
-    for (const Entry& entry : grid.entries) ++grid.begin[grid.place(entry.cell) + 1];
-    for (std::size_t place = 1; place < grid.begin.size(); ++place) grid.begin[place] += grid.begin[place - 1];
-    std::vector<std::size_t> next(grid.begin.begin(), grid.begin.end() - 1);
-    std::vector<Entry> sorted(grid.entries.size());
-    for (const Entry& entry : grid.entries) sorted[next[grid.place(entry.cell)]++] = entry;
-    grid.entries.swap(sorted);
+    grid.places = std::min(all_cells, 4 * grid.entries.size() + 1);
+    Grouping<Entry> sorted = group_by<Entry>(grid.places, [&](const auto& visit) {
+        for (const Entry& entry : grid.entries) visit(grid.place(entry.cell), entry);
+    });
+    grid.begin = std::move(sorted.begin);
+    grid.entries = std::move(sorted.items);
 }
 
 /// Grids of the classes that have particles, small to large.
@@ -218,20 +220,16 @@ std::vector<Pair> search_chunk(const Box& box, const Frame& frame, std::span<con
 
 /// Joins the chunks and sorts by i, then j, then image.
 std::vector<Pair> sorted_pairs(std::span<const std::vector<Pair>> chunks, std::size_t particles) {
-    std::vector<std::size_t> begin(particles + 1, 0);
-    for (const auto& chunk : chunks)
-        for (const Pair& pair : chunk) ++begin[static_cast<std::size_t>(pair.i) + 1];
-    for (std::size_t row = 0; row < particles; ++row) begin[row + 1] += begin[row];
-    std::vector<Pair> pairs(begin.back());
-    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-    for (const auto& chunk : chunks)
-        for (const Pair& pair : chunk) pairs[next[static_cast<std::size_t>(pair.i)]++] = pair;
+    Grouping<Pair> pairs = group_by<Pair>(particles, [&](const auto& visit) {
+        for (const auto& chunk : chunks)
+            for (const Pair& pair : chunk) visit(static_cast<std::size_t>(pair.i), pair);
+    });
 #pragma omp parallel for schedule(static) if (chunks.size() >= worth_threads)
     for (std::size_t row = 0; row < particles; ++row)
-        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(begin[row]),
-                  pairs.begin() + static_cast<std::ptrdiff_t>(begin[row + 1]),
+        std::sort(pairs.items.begin() + static_cast<std::ptrdiff_t>(pairs.begin[row]),
+                  pairs.items.begin() + static_cast<std::ptrdiff_t>(pairs.begin[row + 1]),
                   [](const Pair& a, const Pair& b) { return a.j != b.j ? a.j < b.j : a.image < b.image; });
-    return pairs;
+    return std::move(pairs.items);
 }
 
 void check(const Box& box, std::span<const Vec3> position, std::span<const double> reach) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace kiln::linalg {
 
 namespace {
@@ -68,35 +70,23 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
     return result;
 }
 
-/// Sums `term(first, last)` over fixed chunks of the index range.
+/// Sums `term(first, last)` over fixed chunks of the index range, in their order.
 template <typename Term>
 double chunked_sum(std::int64_t size, const Term& term) {
     const std::int64_t chunks = (size + rows_in_chunk - 1) / rows_in_chunk;
-    std::vector<double> partial(at(chunks));
-#pragma omp parallel for schedule(static) if (size > worth_threads)
-    for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
-        partial[at(chunk)] = term(chunk * rows_in_chunk, std::min(size, (chunk + 1) * rows_in_chunk));
-    }
-    double sum = 0.0;
-    for (const double each : partial) sum += each;
-    return sum;
+    return sum_chunks(at(chunks), 0.0, [&](std::size_t chunk) {
+        const auto first = static_cast<std::int64_t>(chunk) * rows_in_chunk;
+        return term(first, std::min(size, first + rows_in_chunk));
+    });
 }
 
 }  // namespace
 
 ColumnIndex column_index(const BlockMatrix& matrix) {
-    ColumnIndex index;
-    index.start.assign(at(matrix.columns) + 1, 0);
-    for (const std::int32_t column : matrix.column) ++index.start[at(column) + 1];
-    for (std::size_t column = 0; column < at(matrix.columns); ++column) index.start[column + 1] += index.start[column];
-    index.entry.resize(matrix.column.size());
-    std::vector<std::int64_t> next(index.start.begin(), index.start.end() - 1);
-    for (std::int32_t row = 0; row < matrix.rows(); ++row) {
-        for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-            index.entry[at(next[at(matrix.column[at(k)])]++)] = {row, k};
-        }
-    }
-    return index;
+    return group_by<ColumnEntry>(at(matrix.columns), [&](const auto& visit) {
+        for (std::int32_t row = 0; row < matrix.rows(); ++row)
+            for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) visit(at(matrix.column[at(k)]), ColumnEntry{row, k});
+    });
 }
 
 void multiply(const BlockMatrix& matrix, const Vector& x, Vector& y) {
@@ -131,8 +121,7 @@ BlockMatrix product(const BlockMatrix& a, const BlockMatrix& b) {
 
 BlockMatrix transposed_product(const BlockMatrix& a, const ColumnIndex& columns, const BlockMatrix& b) {
     return sum_of_rows(a.columns, b, [&](std::int32_t column, const auto& visit) {
-        for (std::int64_t e = columns.start[at(column)]; e < columns.start[at(column) + 1]; ++e) {
-            const auto [row, block] = columns.entry[at(e)];
+        for (const auto& [row, block] : columns.of(at(column))) {
             const Mat6 transposed = a.block[at(block)].transpose();
             visit(transposed, row);
         }
@@ -152,6 +141,11 @@ double norm(const Vector& x) { return std::sqrt(dot(x, x)); }
 void add(double factor, const Vector& x, Vector& y) {
 #pragma omp parallel for schedule(static) if (x.size() > worth_threads)
     for (std::size_t i = 0; i < x.size(); ++i) y[i] += factor * x[i];
+}
+
+void combine(const Vector& x, double factor, Vector& y) {
+#pragma omp parallel for schedule(static) if (x.size() > worth_threads)
+    for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] + factor * y[i];
 }
 
 }  // namespace kiln::linalg

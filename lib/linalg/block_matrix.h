@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/grouping.h"
+
 namespace kiln::linalg {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -31,15 +33,14 @@ struct BlockMatrix {
     std::int64_t last(std::int32_t row) const { return start[static_cast<std::size_t>(row) + 1]; }
 };
 
-/// Where the blocks of each column of a matrix stand: row and block index, rows ascending.
-struct ColumnIndex {
-    struct Entry {
-        std::int32_t row;
-        std::int64_t block;
-    };
-    std::vector<std::int64_t> start;
-    std::vector<Entry> entry;
+/// A block of a column: its row, and its index in the matrix.
+struct ColumnEntry {
+    std::int32_t row;
+    std::int64_t block;
 };
+
+/// Where the blocks of each column of a matrix stand, rows ascending.
+using ColumnIndex = Grouping<ColumnEntry>;
 
 ColumnIndex column_index(const BlockMatrix& matrix);
 
@@ -62,5 +63,8 @@ double norm(const Vector& x);
 
 /// y += factor x.
 void add(double factor, const Vector& x, Vector& y);
+
+/// y = x + factor y.
+void combine(const Vector& x, double factor, Vector& y);
 
 }  // namespace kiln::linalg

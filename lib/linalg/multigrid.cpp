@@ -171,8 +171,7 @@ void Multigrid::cycle(std::size_t index) {
 #pragma omp parallel for schedule(static) if (coarser.load.size() > worth_threads)
     for (std::size_t a = 0; a < coarser.load.size(); ++a) {
         Vec6 sum = Vec6::Zero();
-        for (std::int64_t e = level.restriction.start[a]; e < level.restriction.start[a + 1]; ++e) {
-            const auto [row, block] = level.restriction.entry[at(e)];
+        for (const auto& [row, block] : level.restriction.of(a)) {
             sum.noalias() += level.prolongation.block[at(block)].transpose() * rest[at(row)];
         }
         coarser.load[a] = sum;

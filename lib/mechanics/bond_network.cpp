@@ -162,7 +162,7 @@ BondBlocks bond_blocks(const BondNetwork& network, std::size_t bond) {
 }
 
 BlockMatrix stiffness_matrix(const BondNetwork& network) {
-    const Incidence incidence = find_incidence(network.nodes(), network.pair);
+    const Grouping<std::int32_t> incidence = find_incidence(network.nodes(), network.pair);
     const auto other_end = [&](std::size_t bond, std::int32_t node) {
         return network.pair[bond][0] == node ? network.pair[bond][1] : network.pair[bond][0];
     };
@@ -172,8 +172,8 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
     for (std::int32_t node = 0; node < nodes; ++node) {
         const auto begin = static_cast<std::ptrdiff_t>(matrix.column.size());
         matrix.column.push_back(node);
-        for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
-            matrix.column.push_back(other_end(at(incidence.bond[at(k)]), node));
+        for (const std::int32_t bond : incidence.of(at(node))) {
+            matrix.column.push_back(other_end(at(bond), node));
         }
         std::sort(matrix.column.begin() + begin, matrix.column.end());
         matrix.column.erase(std::unique(matrix.column.begin() + begin, matrix.column.end()), matrix.column.end());
@@ -186,8 +186,8 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
         const auto block_at = [&](std::int32_t column) -> Mat6& {
             return matrix.block[at(std::lower_bound(begin, end, column) - matrix.column.begin())];
         };
-        for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
-            const auto bond = at(incidence.bond[at(k)]);
+        for (const std::int32_t row : incidence.of(at(node))) {
+            const auto bond = at(row);
             const auto [i, j] = network.pair[bond];
             const BondBlocks blocks = bond_blocks(network, bond);
             if (i == j) {
@@ -231,13 +231,13 @@ physics::BondStress stress_of(const BondNetwork& network, std::size_t bond, cons
 }
 
 Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads) {
-    const Incidence incidence = find_incidence(network.nodes(), network.pair);
+    const Grouping<std::int32_t> incidence = find_incidence(network.nodes(), network.pair);
     const auto nodes = static_cast<std::int32_t>(network.nodes());
     Vector forces(network.nodes(), Vec6::Zero());
 #pragma omp parallel for schedule(static) if (nodes > worth_threads)
     for (std::int32_t node = 0; node < nodes; ++node) {
-        for (std::int64_t k = incidence.start[at(node)]; k < incidence.start[at(node) + 1]; ++k) {
-            const auto bond = at(incidence.bond[at(k)]);
+        for (const std::int32_t row : incidence.of(at(node))) {
+            const auto bond = at(row);
             const BondLoad& load = loads[bond];
             const Vec3 lever = 0.5 * network.vector[bond].cross(load.force);
             for (const int end : {0, 1}) {

@@ -13,26 +13,18 @@ std::size_t Pieces::largest() const {
     return best;
 }
 
-Incidence find_incidence(std::size_t count, std::span<const std::array<std::int32_t, 2>> pairs) {
-    Incidence incidence;
-    incidence.start.assign(count + 1, 0);
-    for (const auto& [i, j] : pairs) {
-        ++incidence.start[static_cast<std::size_t>(i) + 1];
-        if (j != i) ++incidence.start[static_cast<std::size_t>(j) + 1];
-    }
-    for (std::size_t i = 0; i < count; ++i) incidence.start[i + 1] += incidence.start[i];
-    incidence.bond.resize(static_cast<std::size_t>(incidence.start.back()));
-    std::vector<std::int64_t> next(incidence.start.begin(), incidence.start.end() - 1);
-    for (std::size_t bond = 0; bond < pairs.size(); ++bond) {
-        const auto [i, j] = pairs[bond];
-        incidence.bond[static_cast<std::size_t>(next[static_cast<std::size_t>(i)]++)] = static_cast<std::int32_t>(bond);
-        if (j != i) incidence.bond[static_cast<std::size_t>(next[static_cast<std::size_t>(j)]++)] = static_cast<std::int32_t>(bond);
-    }
-    return incidence;
+Grouping<std::int32_t> find_incidence(std::size_t count, std::span<const std::array<std::int32_t, 2>> pairs) {
+    return group_by<std::int32_t>(count, [&](const auto& visit) {
+        for (std::size_t bond = 0; bond < pairs.size(); ++bond) {
+            const auto [i, j] = pairs[bond];
+            visit(static_cast<std::size_t>(i), static_cast<std::int32_t>(bond));
+            if (j != i) visit(static_cast<std::size_t>(j), static_cast<std::int32_t>(bond));
+        }
+    });
 }
 
 Pieces find_pieces(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs) {
-    const Incidence incidence = find_incidence(start_order.size(), pairs);
+    const Grouping<std::int32_t> incidence = find_incidence(start_order.size(), pairs);
     Pieces pieces;
     pieces.start.push_back(0);
     pieces.particle.reserve(start_order.size());
@@ -47,8 +39,8 @@ Pieces find_pieces(std::span<const std::int32_t> start_order, std::span<const st
         reach(first);
         for (std::size_t next = pieces.start.back(); next < pieces.particle.size(); ++next) {
             const auto i = static_cast<std::size_t>(pieces.particle[next]);
-            for (std::int64_t k = incidence.start[i]; k < incidence.start[i + 1]; ++k) {
-                const auto& pair = pairs[static_cast<std::size_t>(incidence.bond[static_cast<std::size_t>(k)])];
+            for (const std::int32_t bond : incidence.of(i)) {
+                const auto& pair = pairs[static_cast<std::size_t>(bond)];
                 reach(pair[0]);
                 reach(pair[1]);
             }

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/grouping.h"
+
 namespace kiln::mechanics {
 
 /// Particles connected by bonds, piece by piece. Within a piece they stand breadth first from the piece's first particle in
@@ -24,13 +26,7 @@ struct Pieces {
 /// start_order: all particles, in the order in which they may begin a piece.
 Pieces find_pieces(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs);
 
-/// For each of `count` particles the bonds at it, ascending: bonds of particle i stand at [start[i], start[i + 1]). A bond of a
-/// particle with its own image stands once.
-struct Incidence {
-    std::vector<std::int64_t> start;
-    std::vector<std::int32_t> bond;
-};
-
-Incidence find_incidence(std::size_t count, std::span<const std::array<std::int32_t, 2>> pairs);
+/// For each of `count` particles the bonds at it, ascending. A bond of a particle with its own image stands once.
+Grouping<std::int32_t> find_incidence(std::size_t count, std::span<const std::array<std::int32_t, 2>> pairs);
 
 }  // namespace kiln::mechanics

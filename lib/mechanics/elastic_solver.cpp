@@ -43,8 +43,8 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground)
     preconditioner_ = std::make_unique<linalg::Multigrid>(matrix_, geometry_of(network), largest_eigenvalue_of_bonds);
 }
 
-SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
-    return conjugate_gradient(
+linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
+    return linalg::solve_blocks(
         matrix_, [this](const Vector& r, Vector& z) { preconditioner_->apply(r, z); }, load, x, tolerance, max_iterations);
 }
 

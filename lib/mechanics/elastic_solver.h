@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "mechanics/bond_network.h"
-#include "mechanics/conjugate_gradient.h"
+#include "linalg/block_solver.h"
 #include "linalg/multigrid.h"
 
 namespace kiln::mechanics {
@@ -22,8 +22,8 @@ class ElasticSolver {
     ElasticSolver(const ElasticSolver&) = delete;  // the preconditioner refers to the matrix
     ElasticSolver& operator=(const ElasticSolver&) = delete;
 
-    /// Displacements under a load in equilibrium; x is where the search starts. See conjugate_gradient for the result.
-    SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
+    /// Displacements under a load in equilibrium; x is where the search starts. See linalg::solve_blocks for the result.
+    linalg::SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
 
     /// Forces that hold the network in a displacement field: the stiffness matrix without the ground, times the displacement.
     void forces(const Vector& displacement, Vector& force) const;

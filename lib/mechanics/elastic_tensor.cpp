@@ -54,7 +54,7 @@ ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double t
         const Mat3 strain = unit_strain(component);
         const std::vector<BondLoad> affine = bond_loads(network, rest, strain);
         Vector displacement;
-        const SolveReport report = solver.solve(nodal_forces(network, affine), displacement, tolerance);
+        const linalg::SolveReport report = solver.solve(nodal_forces(network, affine), displacement, tolerance);
         tensor.affine.col(component) = mean_stress(network, affine, volume);
         tensor.stiffness.col(component) = mean_stress(network, bond_loads(network, displacement, strain), volume);
         tensor.iterations += report.iterations;

@@ -116,8 +116,8 @@ void ExplicitMotion::gather() {
 #pragma omp parallel for schedule(static) if (force_.size() > worth_threads)
     for (std::size_t node = 0; node < force_.size(); ++node) {
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-        for (std::int64_t k = incidence_.start[node]; k < incidence_.start[node + 1]; ++k) {
-            const std::size_t bond = at(incidence_.bond[at(k)]);
+        for (const std::int32_t row : incidence_.of(node)) {
+            const std::size_t bond = at(row);
             const double side = at(network_.pair[bond][0]) == node ? 1.0 : -1.0;
             force += side * bond_force_[bond];
             moment += shear_moment_[bond] + side * hold_[bond].moment;

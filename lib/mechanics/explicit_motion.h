@@ -58,7 +58,7 @@ class ExplicitMotion {
     void gather();
 
     const BondNetwork& network_;
-    Incidence incidence_;
+    Grouping<std::int32_t> incidence_;
     std::vector<Vec6> inverse_mass_;  // 1/kg, rotations over the square of the rotation length
     MotionModel model_;
     ExplicitContacts contacts_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/grouping.h"
 #include "core/neighbours.h"
 
 namespace kiln::packing {
@@ -24,8 +25,7 @@ struct Neighbour {
 
 /// Neighbours of every particle, each pair under both its particles.
 struct Lists {
-    std::vector<std::size_t> begin;
-    std::vector<Neighbour> neighbours;
+    Grouping<Neighbour> neighbours;  // of each particle
     std::vector<Vec3> position;  // m, when the lists were made
 };
 
@@ -50,20 +50,14 @@ void make_lists(const Box& box, std::span<const double> radius, std::vector<Vec3
     for (double& each : reach) each *= 1.0 + margin;
     for (Vec3& each : position) each = box.wrap(each);
     const std::vector<Pair> pairs = find_pairs(box, position, reach);
-    lists.begin.assign(radius.size() + 1, 0);
-    for (const Pair& pair : pairs) {
-        ++lists.begin[static_cast<std::size_t>(pair.i) + 1];
-        ++lists.begin[static_cast<std::size_t>(pair.j) + 1];
-    }
-    for (std::size_t row = 0; row < radius.size(); ++row) lists.begin[row + 1] += lists.begin[row];
-    lists.neighbours.resize(lists.begin.back());
-    std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
     const auto opposite = [](std::int8_t image) { return static_cast<std::int8_t>(-image); };
-    for (const Pair& pair : pairs) {
-        lists.neighbours[next[static_cast<std::size_t>(pair.i)]++] = {pair.j, pair.image};
-        lists.neighbours[next[static_cast<std::size_t>(pair.j)]++] = {
-            pair.i, {opposite(pair.image[0]), opposite(pair.image[1]), opposite(pair.image[2])}};
-    }
+    lists.neighbours = group_by<Neighbour>(radius.size(), [&](const auto& visit) {
+        for (const Pair& pair : pairs) {
+            visit(static_cast<std::size_t>(pair.i), Neighbour{pair.j, pair.image});
+            visit(static_cast<std::size_t>(pair.j),
+                  Neighbour{pair.i, {opposite(pair.image[0]), opposite(pair.image[1]), opposite(pair.image[2])}});
+        }
+    });
     lists.position = position;
 }
 
@@ -72,8 +66,7 @@ Vec3 acceleration_of(std::size_t row, const Box& box, std::span<const double> ra
                      const Lists& lists, Sums& sums) {
     Vec3 net = Vec3::Zero();
     const double mass = cube(radius[row]);
-    for (std::size_t at = lists.begin[row]; at < lists.begin[row + 1]; ++at) {
-        const Neighbour& neighbour = lists.neighbours[at];
+    for (const Neighbour& neighbour : lists.neighbours.of(row)) {
         const auto other = static_cast<std::size_t>(neighbour.row);
         const double reach = radius[row] + radius[other];
         const Vec3 apart = position[other] + box.shift(neighbour.image) - position[row];

@@ -44,23 +44,15 @@ void ExplicitSintering::list_pairs() {
     body_.list_pairs(0.5 * list_margin * body_.mean_radius());
     pairs_ = body_.pairs();
     force_.resize(pairs_.size());
-    begin_.assign(body_.size() + 1, 0);
+    sides_ = group_by<std::int32_t>(body_.size(), [&](const auto& visit) {
+        for (std::size_t row = 0; row < pairs_.size(); ++row) {
+            visit(static_cast<std::size_t>(pairs_[row].i), static_cast<std::int32_t>(row));
+            visit(static_cast<std::size_t>(pairs_[row].j), -1 - static_cast<std::int32_t>(row));
+        }
+    });
     first_row_.assign(body_.size() + 1, 0);
-    for (const Pair& pair : pairs_) {
-        ++first_row_[static_cast<std::size_t>(pair.i) + 1];
-        ++begin_[static_cast<std::size_t>(pair.i) + 1];
-        ++begin_[static_cast<std::size_t>(pair.j) + 1];
-    }
-    for (std::size_t particle = 0; particle < body_.size(); ++particle) {
-        begin_[particle + 1] += begin_[particle];
-        first_row_[particle + 1] += first_row_[particle];
-    }
-    row_.resize(begin_.back());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        row_[next[static_cast<std::size_t>(pairs_[row].i)]++] = static_cast<std::int32_t>(row);
-        row_[next[static_cast<std::size_t>(pairs_[row].j)]++] = -1 - static_cast<std::int32_t>(row);
-    }
+    for (const Pair& pair : pairs_) ++first_row_[static_cast<std::size_t>(pair.i) + 1];
+    for (std::size_t particle = 0; particle < body_.size(); ++particle) first_row_[particle + 1] += first_row_[particle];
 }
 
 ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, const std::vector<double>& diffusion) const {
@@ -104,9 +96,9 @@ ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<dou
     for (std::size_t particle = 0; particle < body_.size(); ++particle) {
         Vec3 sum = Vec3::Zero();
         double viscosity = 0.0;
-        for (std::size_t place = begin_[particle]; place < begin_[particle + 1]; ++place) {
-            const bool second = row_[place] < 0;
-            const PairForce& pair = force_[static_cast<std::size_t>(second ? -1 - row_[place] : row_[place])];
+        for (const std::int32_t side : sides_.of(particle)) {
+            const bool second = side < 0;
+            const PairForce& pair = force_[static_cast<std::size_t>(second ? -1 - side : side)];
             sum += second ? Vec3(-pair.force) : pair.force;
             viscosity += pair.viscosity;
         }

@@ -2,6 +2,7 @@
 // method.
 #pragma once
 
+#include "core/grouping.h"
 #include "sintering/sintering.h"
 
 namespace kiln::sintering {
@@ -44,8 +45,7 @@ class ExplicitSintering : public SinteringMethod {
     Vec3 box_inertia_ = Vec3::Zero();   // kg m2, of the strain rates
     std::vector<Pair> pairs_;
     std::vector<std::size_t> first_row_;  // of the pairs whose first particle is this one or a later one
-    std::vector<std::size_t> begin_;    // of each particle's rows below
-    std::vector<std::int32_t> row_;     // pair, or -1 - pair where the particle is its second
+    Grouping<std::int32_t> sides_;  // of each particle: pair, or -1 - pair where the particle is its second
     std::vector<PairForce> force_;      // a row a pair
     std::vector<Vec3> velocity_, acceleration_;  // m/s, relative to the affine flow; m/s2
     std::vector<double> damping_;       // of each particle, sum of viscosities over mass, 1/s

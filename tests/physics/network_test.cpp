@@ -37,7 +37,7 @@ State rough_bar(std::array<int, 3> cells) {
 Vector solved(const BondNetwork& network, const Vector& load, double tolerance = 1e-12) {
     ElasticSolver solver(network, Ground::displacement_and_rotation);
     Vector displacement;
-    const SolveReport report = solver.solve(load, displacement, tolerance);
+    const linalg::SolveReport report = solver.solve(load, displacement, tolerance);
     CHECK(report.converged);
     return displacement;
 }
@@ -134,7 +134,7 @@ TEST_CASE("iterations grow neither with the number of particles nor with slender
         ElasticSolver solver(network, Ground::displacement_and_rotation);
         const Vector load = balanced_load(network, network.nodes() - 1, network.nodes() / 2, Vec3(0.0, 0.0, 1e-6));
         Vector displacement;
-        const SolveReport report = solver.solve(load, displacement, 1e-8);
+        const linalg::SolveReport report = solver.solve(load, displacement, 1e-8);
         CHECK(report.iterations <= 40);
         CHECK(report.iterations > 0);
         CHECK(solver.preconditioner().complexity() < 2.0);
