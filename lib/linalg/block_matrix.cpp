@@ -85,7 +85,8 @@ double chunked_sum(std::int64_t size, const Term& term) {
 ColumnIndex column_index(const BlockMatrix& matrix) {
     return group_by<ColumnEntry>(at(matrix.columns), [&](const auto& visit) {
         for (std::int32_t row = 0; row < matrix.rows(); ++row)
-            for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) visit(at(matrix.column[at(k)]), ColumnEntry{row, k});
+            for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k)
+                visit(at(matrix.column[at(k)]), ColumnEntry{row, k});
     });
 }
 

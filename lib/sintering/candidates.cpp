@@ -11,9 +11,9 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr double least_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
-constexpr double guess_margin = 2.0;   // of the closing that is guessed, that makes a candidate
-constexpr double harmless_overlap = 0.05;  // of the mean closing of contacts in a step, that a pair left out may reach
+constexpr double min_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
+constexpr double guess_margin = 2.0;   // of the approach that is guessed, that makes a candidate
+constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
 
 }  // namespace
 
@@ -34,7 +34,7 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
     const auto [first, second] = body_.radii(pair);
     const std::size_t kind = kinetics_.row(body_.particles(), pair);
     PairStep step{};
-    step.vector = step.lever = body_.vector(pair);
+    step.vector = step.branch = body_.vector(pair);
     step.distance = step.vector.norm();
     step.overlap = contact_overlap(first, second, step.distance);
     step.reduced_radius = physics::reduced_radius(first, second);
@@ -58,9 +58,9 @@ double Candidates::max_isolated_approach(const std::vector<double>& diffusion) c
         const std::size_t kind = kinetics_.row(body_.particles(), pair);
         if (start < 0.0 || kinetics_.rigid(kind)) continue;
         const PairStep step = pair_step(pair, diffusion, 1.0);
-        // w K h^2 and w^3 K/3 are both at most the driving force over the step's diffusion.
-        const double cube = 3.0 * step.force / step.cubic;
-        most = std::max(most, start > 0.0 ? std::min(cube / (3.0 * start * start), std::cbrt(cube)) : std::cbrt(cube));
+        // The viscosity only grows: the approach is at most that at the first viscosity, and that from no overlap at all.
+        const double integral = step.force / step.cubic, from_nothing = physics::overlap_of_integral(0.0, integral);
+        most = std::max(most, start > 0.0 ? std::min(integral / physics::viscosity_shape(start), from_nothing) : from_nothing);
     }
     return most / body_.mean_radius();
 }
@@ -71,7 +71,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
             (physics::normal_viscosity_factor(constants_, 0.5 * radius) * radius * radius);
     lists_ = body_.lists();
-    const double reach = least_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
+    const double reach = min_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
     const auto expected = [&](const Pair& pair) {
         return &guess == &other ? end_overlap(pair, guess) : std::max(end_overlap(pair, guess), end_overlap(pair, other));
     };
@@ -121,7 +121,7 @@ void Candidates::turn_to_nodes(const RigidClusters& clusters) {
     for (const RigidClusters::NodePair& row : clusters.node_pairs(pairs_)) {
         PairStep step = steps_[row.row];
         if (row.reversed) step.vector = -step.vector;
-        step.lever = pair_vector(body_.box(), clusters.places(), row.pair);
+        step.branch = pair_vector(body_.box(), clusters.places(), row.pair);
         pairs.push_back(row.pair);
         steps.push_back(step);
     }

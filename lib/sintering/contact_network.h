@@ -43,11 +43,11 @@ class ContactNetwork {
 
     /// Calls work(chunk number) for each chunk, in parallel.
     template <typename Work>
-    void for_chunks(const Work& work) const { kiln::for_chunks(chunks_.size(), work, fewest_parallel); }
+    void for_chunks(const Work& work) const { kiln::for_chunks(chunks_.size(), work, min_parallel_chunks); }
 
     /// Sum of value(chunk number) over the chunks, in their order.
     template <typename Value>
-    double sum_chunks(const Value& value) const { return kiln::sum_chunks(chunks_.size(), 0.0, value, fewest_parallel); }
+    double sum_chunks(const Value& value) const { return kiln::sum_chunks(chunks_.size(), 0.0, value, min_parallel_chunks); }
 
     /// forces = sum over contacts of force(entry, du): added to particle j, taken from i; forces.strain = sum of force * l.
     /// du is the relative motion of the contact. total is scratch space of 3N.
@@ -72,7 +72,7 @@ class ContactNetwork {
     bool owns_second(const Chunk& chunk, std::size_t entry) const { return owns(chunk, entry, own_second); }
 
    private:
-    static constexpr std::size_t fewest_parallel = 5;  // chunks; below, threads wait for each other longer than they work
+    static constexpr std::size_t min_parallel_chunks = 5;  // chunks; below, threads wait for each other longer than they work
     static constexpr std::uint8_t own_first = 1, own_second = 2;
     bool owns(const Chunk& chunk, std::size_t entry, std::uint8_t which) const {
         return (side_[chunk.shift_begin + entry - chunk.crossing] & which) != 0;

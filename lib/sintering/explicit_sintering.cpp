@@ -11,12 +11,12 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr double stability_share = 0.5;    // of the longest stable step
-constexpr double largest_closing = 1e-3;   // of the mean radius, of any gap in a step
+constexpr double stability_fraction = 0.5;    // of the longest stable step
+constexpr double max_approach = 1e-3;   // of the mean radius, of any gap in a step
 constexpr double list_margin = 0.1;        // of the mean radius
 constexpr double record_change = 2e-3;     // of the density's logarithm, after which a record is due
-constexpr int most_steps = 500;            // in a record
-constexpr int most_bisections = 100;
+constexpr int max_steps = 500;            // in a record
+constexpr int max_bisections = 100;
 constexpr double landing_accuracy = 1e-9;
 constexpr std::size_t chunk = 1024;        // particles whose sums are formed together; fixed, so that sums do not depend on threads
 
@@ -123,8 +123,8 @@ double ExplicitSintering::stable_step(const BoxForce& box) const {
         push = std::max(push, acceleration_[particle].norm());
     }
     for (int axis = 0; axis < 3; ++axis) fastest = std::max(fastest, box.viscosity[axis] / box_inertia_[axis]);
-    const double length = largest_closing * body_.mean_radius();
-    double step = fastest > 0.0 ? stability_share * 2.0 / fastest : std::numeric_limits<double>::infinity();
+    const double length = max_approach * body_.mean_radius();
+    double step = fastest > 0.0 ? stability_fraction * 2.0 / fastest : std::numeric_limits<double>::infinity();
     if (speed > 0.0) step = std::min(step, 0.5 * length / speed);
     if (push > 0.0) step = std::min(step, std::sqrt(length / push));
     return step;
@@ -151,7 +151,7 @@ Motion ExplicitSintering::motion_over(double step) const {
 
 double ExplicitSintering::shortened(double step, double log_change) const {
     double low = 0.0, high = step;  // the density at the end of the step grows with its length
-    for (int halving = 0; halving < most_bisections; ++halving) {
+    for (int halving = 0; halving < max_bisections; ++halving) {
         const double middle = 0.5 * (low + high), miss = body_.log_density_change(motion_over(middle)) - log_change;
         if (std::abs(miss) < landing_accuracy) return middle;
         (miss > 0.0 ? high : low) = middle;
@@ -160,7 +160,7 @@ double ExplicitSintering::shortened(double step, double log_change) const {
 }
 
 void ExplicitSintering::step_once(double latest_time, double highest_density, StepRecord& record) {
-    if (body_.least_room() < largest_closing * body_.mean_radius()) list_pairs();
+    if (body_.min_margin() < max_approach * body_.mean_radius()) list_pairs();
     const double now = body_.time();
     const BoxForce box = find_forces(kinetics_.diffusion_at(kinetics_.schedule().temperature(now)));
     double step = stable_step(box);
@@ -184,7 +184,7 @@ StepRecord ExplicitSintering::advance(double latest_time, double highest_density
     if (pairs_.empty()) list_pairs();
     const double start = body_.time(), density = body_.density();
     StepRecord record;
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < max_steps; ++step) {
         step_once(latest_time, highest_density, record);
         ++record.attempts;
         const bool reached =

@@ -11,27 +11,28 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr double largest_closing = 1.0;     // of the mean radius, of any gap in a step
-constexpr double largest_log_step = 0.05;   // of the density
+constexpr double max_approach = 1.0;     // of the mean radius, of any gap in a step
+constexpr double max_log_step = 0.05;   // of the density
 constexpr double guess_margin = 1.2;        // of the motion that is guessed, that pairs are listed for
-constexpr double first_closing = 2e-3;      // of the radius, in the first step, by the pair law
+constexpr double first_approach = 2e-3;      // of the radius, in the first step, by the pair law
 constexpr double third_order_factor = 3.0;  // error of the second-order step over (difference of the orders times log step)
-constexpr double accepted_room = 0.7;       // factor to the length that meets the tolerance, of an accepted step
-constexpr double smallest_factor = 0.2;     // of a rejected step's length
+constexpr double accepted_factor = 0.7;       // factor to the length that meets the tolerance, of an accepted step
+constexpr double min_factor = 0.2;     // of a rejected step's length
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
 constexpr std::size_t small_packing = 1000; // particles; solving closely costs nothing there
-constexpr double small_share = 1e-3;        // of the solver's tolerance
-constexpr double predictor_share = 20.0;    // of the solver's tolerance, for a first-order solution that only prepares the second
-constexpr double alone_share = 0.1;         // of it, for first-order steps, whose error falls with their length only slowly
-constexpr double harmless_share = 0.03;     // of the tolerance, change of density in a first-order step that needs no control
+constexpr double small_fraction = 1e-3;        // of the solver's tolerance
+constexpr double predictor_fraction = 20.0;  // of the solver's tolerance, for a first-order solution that only prepares the second
+constexpr double first_order_fraction = 0.1;   // of it, for first-order steps, whose error falls with their length only slowly
+constexpr double harmless_fraction = 0.03;     // of the tolerance, change of density in a first-order step that needs no control
 constexpr double invisible_approach = 1e-20;  // of the mean radius; the rounding of a position is 1e-16 and more of it, and no
                                               // force in a packing is thousands of times that of an isolated pair
-constexpr std::size_t most_idle_steps = 100;
+constexpr double same_time = 1e-12;         // relative: the rounding of the time that is left of a schedule
+constexpr std::size_t max_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
 constexpr double landing_closeness = 2e-3;  // of a step's change of density, within which scaling its motion is exact enough
-constexpr int most_landings = 40;           // attempts to end a step at a wanted density
-constexpr int most_rejections = 20;         // of one step
+constexpr int max_landings = 40;           // attempts to end a step at a wanted density
+constexpr int max_rejections = 20;         // of one step
 
 }  // namespace
 
@@ -51,11 +52,11 @@ double ImplicitSintering::first_duration() {
         ++contacts;
     }
     if (contacts > 0) overlap /= static_cast<double>(contacts);
-    for (const Pair& pair : body_.pairs()) {  // time in which a pair of mean overlap closes by first_closing
+    for (const Pair& pair : body_.pairs()) {  // time in which a pair of mean overlap closes by first_approach
         const PairStep step = candidates_.pair_step(pair, diffusion, 1.0);
-        const double start = overlap * step.reduced_radius, end = start + 2.0 * first_closing * step.reduced_radius;
+        const double start = overlap * step.reduced_radius, end = start + 2.0 * first_approach * step.reduced_radius;
         if (step.cubic > 0.0)
-            shortest = std::min(shortest, step.cubic * (end * end * end - start * start * start) / (3.0 * step.force));
+            shortest = std::min(shortest, step.cubic * physics::viscosity_integral(start, end) / step.force);
     }
     return std::isfinite(shortest) ? shortest : 1.0;
 }
@@ -105,8 +106,8 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
         newton_ += trial.report.newton;
         conjugate_gradients_ += trial.report.conjugate_gradients;
         motion = problem.clusters.particles(nodes);
-        trial.leapt = body_.closing_bound(motion) > largest_closing * body_.mean_radius();
-        if (trial.leapt) return;  // no list of pairs is made for such a leap: the step is too long
+        trial.too_far = body_.approach_bound(motion) > max_approach * body_.mean_radius();
+        if (trial.too_far) return;  // no list of pairs is made for such a leap: the step is too long
         body_.cover(motion);
         if (candidates_.complete(motion)) return;
         candidates_.choose(trial.first_order, trial.motion, problem.diffusion, true);
@@ -120,10 +121,10 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     const std::vector<double> diffusion = kinetics_.diffusion_over(body_.time(), until);
     candidates_.choose(guess, guess, diffusion);
     const RigidClusters clusters(body_.box(), body_.particles().position, candidates_.sticking());
-    const double closely = settings_.solver_tolerance * (body_.size() < small_packing ? small_share : 1.0);
+    const double closely = settings_.solver_tolerance * (body_.size() < small_packing ? small_fraction : 1.0);
     const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
                                 .pressure = candidates_.unit() * settings_.pressure,
-                                .first_tolerance = closely * (settings_.second_order ? predictor_share : alone_share),
+                                .first_tolerance = closely * (settings_.second_order ? predictor_fraction : first_order_fraction),
                                 .second_tolerance = closely,
                                 .stop = settings_.stop};
     Problem problem{diffusion, clusters, settings, std::nullopt};
@@ -133,8 +134,8 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     trial.motion = trial.first_order = guess;
     solve(problem, false, trial);
     trial.motion = trial.first_order;
-    if (!trial.leapt) solve(problem, true, trial);
-    if (trial.leapt) return trial;
+    if (!trial.too_far) solve(problem, true, trial);
+    if (trial.too_far) return trial;
     for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
         trial.report.stress[static_cast<Eigen::Index>(axis)] *= body_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
     trial.log_density = body_.log_density_change(trial.motion);
@@ -151,7 +152,7 @@ ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& d
     double low = 0.0, high = duration;
     double before = duration, before_change = beyond.log_density, here = parabola(log_change, duration, beyond.log_density);
     Trial trial = beyond;
-    for (int iteration = 0; iteration < most_landings; ++iteration) {
+    for (int iteration = 0; iteration < max_landings; ++iteration) {
         trial = attempt(kinetics_.after(body_.time(), here), scaled(trial.motion, log_change / trial.log_density));
         const double miss = trial.log_density - log_change, rate = (trial.log_density - before_change) / (here - before);
         const double next = here - miss / rate;
@@ -183,17 +184,18 @@ double ImplicitSintering::step_error(const Trial& trial) const {
     return trial.difference * (settings_.second_order ? third_order_factor * std::abs(trial.log_density) : 1.0);
 }
 
-double ImplicitSintering::room_for(const Trial& trial) const {
+double ImplicitSintering::length_factor_for(const Trial& trial) const {
     if (trial.difference == 0.0) return std::numeric_limits<double>::infinity();
-    const double share = settings_.tolerance / typical_log_range / trial.difference;  // of a step, over its change of log density
-    if (settings_.second_order) return std::sqrt(share / third_order_factor);
-    return share * std::max(std::abs(trial.log_density), harmless_share * settings_.tolerance);
+    const double fraction =
+        settings_.tolerance / typical_log_range / trial.difference;  // of a step, over its change of log density
+    if (settings_.second_order) return std::sqrt(fraction / third_order_factor);
+    return fraction * std::max(std::abs(trial.log_density), harmless_fraction * settings_.tolerance);
 }
 
 ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time) {
-    const double room = kinetics_.equivalent(body_.time(), latest_time);
-    duration = std::min(next_duration_, room);
-    const bool ends_on_time = duration < next_duration_ || room == next_duration_;
+    const double left = kinetics_.equivalent(body_.time(), latest_time);
+    duration = std::min(next_duration_, left);
+    const bool ends_on_time = duration < next_duration_ || left == next_duration_;
     double until = ends_on_time ? latest_time : kinetics_.after(body_.time(), duration);
     const double slowing = rate_before_ > 0.0 && last_rate_ > 0.0 ? std::clamp(last_rate_ / rate_before_, 0.5, 1.0) : 1.0;
     Motion guess = scaled(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
@@ -202,30 +204,30 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
         if (!(until > body_.time()))
             throw Error("no step is short enough to converge at " + std::to_string(body_.time()) + " s");
         trial = attempt(until, guess);
-        if (!trial.leapt && room_for(trial) >= accepted_room && std::abs(trial.log_density) <= largest_log_step &&
+        if (!trial.too_far && length_factor_for(trial) >= accepted_factor && std::abs(trial.log_density) <= max_log_step &&
             trial.converged)
             break;
-        if (rejected == most_rejections) {
-            if (trial.leapt)
+        if (rejected == max_rejections) {
+            if (trial.too_far)
                 throw Error("particles leap by more than a radius however short the step is at " + std::to_string(body_.time()) +
                             " s");
             break;  // the record says that it did not converge
         }
-        const double factor = trial.leapt ? smallest_factor : std::clamp(0.8 * room_for(trial), smallest_factor, 0.7);
-        guess = trial.leapt ? Motion(body_.size()) : scaled(trial.motion, factor);
+        const double factor = trial.too_far ? min_factor : std::clamp(0.8 * length_factor_for(trial), min_factor, 0.7);
+        guess = trial.too_far ? Motion(body_.size()) : scaled(trial.motion, factor);
         duration *= factor;
         until = kinetics_.after(body_.time(), duration);
     }
-    const double growth = std::clamp(0.9 * room_for(trial), 0.5, 2.5);
+    const double growth = std::clamp(0.9 * length_factor_for(trial), 0.5, 2.5);
     next_duration_ = ends_on_time && until == latest_time ? std::max(next_duration_, duration * growth) : duration * growth;
-    const double room_left = 0.8 * largest_log_step / std::max(std::abs(trial.log_density), 1e-300);
-    next_duration_ = std::min(next_duration_, duration * std::max(room_left, 0.5));
+    const double log_step_left = 0.8 * max_log_step / std::max(std::abs(trial.log_density), 1e-300);
+    next_duration_ = std::min(next_duration_, duration * std::max(log_step_left, 0.5));
     return trial;
 }
 
 bool ImplicitSintering::nothing_moves(double from, double until) const {
     if (std::isinf(until)) return false;
-    if (!(kinetics_.equivalent(from, until) > 0.0)) return true;
+    if (until - from <= same_time * until || !(kinetics_.equivalent(from, until) > 0.0)) return true;
     return candidates_.max_isolated_approach(kinetics_.diffusion_over(from, until)) < invisible_approach;
 }
 
@@ -242,7 +244,7 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
         if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
     }
     idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
-    if (idle_steps_ > most_idle_steps && std::isinf(latest_time))
+    if (idle_steps_ > max_idle_steps && std::isinf(latest_time))
         throw Error("the density stays at " + std::to_string(body_.density()) +
                     "; no contact is left that densifies the box, so " + std::to_string(highest_density) + " cannot be reached");
     StepRecord record = finish(trial, duration);

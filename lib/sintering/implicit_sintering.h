@@ -27,7 +27,7 @@ class ImplicitSintering : public SinteringMethod {
         double until = 0.0;        // s
         double log_density = 0.0;  // change over the step
         double difference = 0.0;   // between its two orders
-        bool leapt = false;        // further than any list of pairs reaches
+        bool too_far = false;        // further than any list of pairs reaches
     };
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
     /// What a trial step solves, on the pairs chosen last.
@@ -44,7 +44,7 @@ class ImplicitSintering : public SinteringMethod {
     void solve(Problem& problem, bool second, Trial& trial);
     Trial attempt(double until, const Motion& guess);
     double step_error(const Trial& trial) const;  // estimated, relative, of the density
-    double room_for(const Trial& trial) const;    // factor to the length of step that the tolerance allows
+    double length_factor_for(const Trial& trial) const;    // factor to the length of step that the tolerance allows
     Trial accepted_attempt(double& duration, double latest_time);
     Trial land_on(double log_change, double& duration, const Trial& beyond);
     double parabola(double log_change, double duration, double log_density) const;

@@ -14,7 +14,7 @@ namespace kiln::sintering {
 namespace {
 
 constexpr double same = 1e-15;  // relative, of equivalent times
-constexpr int most_halvings = 200;
+constexpr int max_halvings = 200;
 constexpr double warm = 3000.0;  // K, at which everything that diffuses at all does so visibly
 
 /// Largest contact radius over particle radius at equilibrium of grain boundary and surface, a/R = sin(psi/2); Bouvard & McMeeking
@@ -132,7 +132,7 @@ double Kinetics::after(double from, double wanted) const {
         double high = *next;  // the time lies between: Newton, kept inside the bracket
         const double begin = low;
         double time = begin + left / passes * (high - begin);
-        for (int halving = 0; halving < most_halvings && high > low; ++halving) {
+        for (int halving = 0; halving < max_halvings && high > low; ++halving) {
             const double miss = equivalent(begin, time) - left;
             if (std::abs(miss) <= same * left) break;
             (miss > 0.0 ? high : low) = time;

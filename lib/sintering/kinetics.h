@@ -34,10 +34,10 @@ class Kinetics {
 
     /// True for a pair that does not diffuse, or over the whole schedule by less than `rigid_fraction` of the fastest pair: once it
     /// touches it sticks. The overlap of a pair grows with the cube root of its diffusion, so such a pair would come to less than
-    /// 5e-4 of the fastest one's.
+    /// 5e-3 of the fastest one's.
     bool rigid(std::size_t row) const { return rigid_[row]; }
     bool any_rigid() const { return any_rigid_; }
-    static constexpr double rigid_fraction = 1e-10;
+    static constexpr double rigid_fraction = 1e-7;
 
     /// Pairs of materials that diffuse and are rigid all the same: their names, and their diffusion over that of the fastest.
     struct SlowPair {

@@ -5,7 +5,7 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr double smallest_strain_pivot = 1e-12;  // of the trace; below it no contact reaches along an axis
+constexpr double min_strain_pivot = 1e-12;  // of the trace; below it no contact reaches along an axis
 
 std::vector<linalg::NodeRange> ranges_of(const ContactNetwork& network) {
     std::vector<linalg::NodeRange> ranges;
@@ -27,7 +27,7 @@ Eigen::Matrix3d strain_inverse_of(const ContactNetwork& network, std::span<const
     });
     Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
     for (const Eigen::Matrix3d& part : parts) strain += part;
-    return linalg::pivot_inverse(strain, strain.trace(), smallest_strain_pivot);
+    return linalg::pivot_inverse(strain, strain.trace(), min_strain_pivot);
 }
 
 std::vector<Pair> pairs_of(const std::vector<RigidClusters::NodePair>& rows) {

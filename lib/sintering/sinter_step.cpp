@@ -35,7 +35,7 @@ constexpr double single_contrast = 100.0;  // of diffusion, up to which single p
 double square(double x) { return x * x; }
 
 /// Share of the step in which a pair touches, by linear change of the overlap.
-double touching_share(double start, double end) {
+double touching_fraction(double start, double end) {
     if (start >= 0.0 && end >= 0.0) return 1.0;
     if (start < 0.0 && end < 0.0) return 0.0;
     return std::max(start, end) / std::abs(end - start);
@@ -57,10 +57,10 @@ std::vector<double> slowness_of(std::span<const PairStep> step) {
     return slowness;
 }
 
-/// Overlap at the end of the step of a pair that nothing else holds, under its share of the driving force, m.
-double alone(const PairStep& pair, double share) {
+/// Overlap at the end of the step of a pair that nothing else holds, under its fraction of the driving force, m.
+double isolated_end_of(const PairStep& pair, double fraction) {
     if (!(pair.cubic > 0.0)) return 0.0;
-    return physics::overlap_of_integral(pair.overlap, share * pair.force / pair.cubic);
+    return physics::overlap_of_integral(pair.overlap, fraction * pair.force / pair.cubic);
 }
 
 }  // namespace
@@ -76,13 +76,13 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       rows_(pairs.size()),
       entries_(network_.pair.size()),
       total_(3 * position.size()),
-      drive_(position.size()),
+      driving_forces_(position.size()),
       unbalanced_(position.size()),
       direction_(position.size()) {
     branch_.reserve(step.size());
     double slowest = 0.0;
     for (const PairStep& pair : step) {
-        branch_.push_back(pair.lever);
+        branch_.push_back(pair.branch);
         slowest = std::max(slowest, pair.slowness);
     }
     if (slowest <= single_contrast)
@@ -97,19 +97,19 @@ Vec3 SinterStep::relative(std::size_t row, const Motion& motion) const {
     return b - a + motion.strain.cwiseProduct(branch_[row]);
 }
 
-SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double share, double goal,
+SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double fraction, double isolated_end,
                                              double end_overlap) const {
     const PairStep& pair = step_[row];
     const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
-    return {normal, pair.overlap, pair.cubic, goal, share * pair.force, pair.shear * share * mean_overlap};
+    return {normal, pair.overlap, pair.cubic, isolated_end, fraction * pair.force, pair.shear * fraction * mean_overlap};
 }
 
 void SinterStep::start_geometry() {
     for_rows(step_.size(), [&](std::size_t row) {
         const PairStep& pair = step_[row];
-        const double share = pair.overlap >= 0.0 ? 1.0 : 0.0, goal = alone(pair, share);
+        const double fraction = pair.overlap >= 0.0 ? 1.0 : 0.0, isolated_end = isolated_end_of(pair, fraction);
         // Shear by the overlap that the pair alone would come to: at the start of the step a new contact has no neck to resist.
-        rows_[row] = pair_force(row, pair.vector / pair.distance, share, goal, goal);
+        rows_[row] = pair_force(row, pair.vector / pair.distance, fraction, isolated_end, isolated_end);
     });
     pressure_volume_ = settings_.pressure * box_.volume();
     take_geometry();
@@ -120,8 +120,8 @@ void SinterStep::midpoint_geometry(const Motion& motion) {
         const PairStep& pair = step_[row];
         const Vec3 end = pair.vector + relative(row, motion);
         const double end_overlap = pair.overlap + pair.distance - end.norm();
-        const double share = touching_share(pair.overlap, end_overlap);
-        rows_[row] = pair_force(row, (pair.vector + end).normalized(), share, alone(pair, share), end_overlap);
+        const double fraction = touching_fraction(pair.overlap, end_overlap);
+        rows_[row] = pair_force(row, (pair.vector + end).normalized(), fraction, isolated_end_of(pair, fraction), end_overlap);
     });
     const Vec3 stretch = Vec3::Ones() + 0.5 * motion.strain;  // the pressure acts on the faces of the box as they are half way
     pressure_volume_ = settings_.pressure * box_.volume() * stretch.prod();
@@ -141,21 +141,22 @@ void SinterStep::take_geometry() {
         });
     }, solver_);
     const Motion rest(network_.particles());
-    network_.gather(rest, drive_, total_,
-                    [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].drive * entries_[entry].normal; });
+    network_.gather(rest, driving_forces_, total_,
+                    [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].driving * entries_[entry].normal; });
     start_limits();
 }
 
 void SinterStep::start_limits() {
     double stiffness = 0.0;
-    for (const PairForce& pair : rows_) stiffness += pair.drive > 0.0 ? pair.cubic * physics::viscosity_shape(pair.goal) : 0.0;
+    for (const PairForce& pair : rows_)
+        stiffness += pair.driving > 0.0 ? pair.cubic * physics::viscosity_shape(pair.isolated_end) : 0.0;
     limits_.reset(step_.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1)));
     for (std::size_t row = 0; row < step_.size(); ++row) {
         const PairStep& pair = step_[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
         limits_.add(row, pair.limit,
-                    std::max(0.0, rows_[row].drive - pair.cubic * physics::viscosity_integral(start, reached)));  // as if alone
+                    std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(start, reached)));  // as if alone
     }
 }
 
@@ -168,18 +169,18 @@ void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool 
         const double resistance = pair_resistance(pair.cubic, pair.overlap, -along);
         // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least
         // a part of the tangent there.
-        const double least = secant ? physics::mean_viscosity_shape(pair.goal, reached)
-                                    : min_tangent * physics::viscosity_shape(pair.goal);
+        const double least = secant ? physics::mean_viscosity_shape(pair.isolated_end, reached)
+                                    : min_tangent * physics::viscosity_shape(pair.isolated_end);
         const double limit = limits_.any() ? limits_.reaction(static_cast<std::size_t>(network_.pair[entry]), -along) : 0.0;
-        const double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.goal ? least : 0.0);
+        const double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.isolated_end ? least : 0.0);
         solver.stiffness().set(entry, tangent + (limit > 0.0 ? limits_.stiffness() : 0.0), pair.tangential);
-        return (pair.drive - resistance - limit - pair.tangential * along) * pair.normal +
+        return (pair.driving - resistance - limit - pair.tangential * along) * pair.normal +
                pair.tangential * du;
     });
     strain_force_ = unbalanced_.strain;
     unbalanced_.strain += pressure_volume_;
     project(unbalanced_, settings_.allowed_strain);
-    work_ = -dot(network_, drive_, motion) - pressure_volume_.dot(motion.strain);
+    work_ = -dot(network_, driving_forces_, motion) - pressure_volume_.dot(motion.strain);
     if (!std::isfinite(work_)) throw Error("a step of sintering meets a force that is not a finite number");
 }
 
@@ -214,8 +215,8 @@ double SinterStep::line_search(double slope, Motion& motion) {
     double length = 1.0, low = 0.0, low_slope = -slope, high = 1.0, high_slope = dot(network_, unbalanced_, direction_);
     if (high_slope <= overshoot * slope) return length;
     for (int search = 0; search < max_searches; ++search) {  // regula falsi on the slope; a convex function has one zero of it
-        const double share = std::clamp(-low_slope / (high_slope - low_slope), 0.1, 0.9);
-        const double next = low + share * (high - low);
+        const double fraction = std::clamp(-low_slope / (high_slope - low_slope), 0.1, 0.9);
+        const double next = low + fraction * (high - low);
         add(network_, next - length, direction_, motion);
         length = next;
         forces(motion, false);
@@ -293,7 +294,7 @@ void SinterStep::remove_drift(Motion& motion) const {
     const std::size_t count = network_.particles();
     Clusters clusters(count);
     for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        if (rows_[row].drive > 0.0 || step_[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
+        if (rows_[row].driving > 0.0 || step_[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
     }
     std::vector<Vec3> drift(count, Vec3::Zero());
     std::vector<double> members(count, 0.0);

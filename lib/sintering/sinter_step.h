@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/stop.h"
-#include "sintering/closing_limits.h"
+#include "sintering/unilateral_constraints.h"
 #include "sintering/contact_network.h"
 #include "sintering/tangent_solver.h"
 
@@ -23,14 +23,14 @@ namespace kiln::sintering {
 /// viscosity; it can only reach its limit. Forces may be in any unit, the same for all: only their ratios move anything.
 struct PairStep {
     Vec3 vector;             // l, from i to j, m
-    Vec3 lever;              // from node to node of the network, m; l for particles that move by themselves
+    Vec3 branch;              // from node to node of the network, m; l for particles that move by themselves
     double distance;         // |l|, m
     double overlap;          // h, m; negative for a gap
     double reduced_radius;   // R*, m
     double force;            // f
     double cubic;            // K/I, force/m3
     double shear;            // tangential viscosity over h and I, force/m2
-    double limit;            // largest closing, m; infinity for none
+    double limit;            // largest approach, m; infinity for none
     double slowness;         // integral of Delta over the step of the fastest pair over that of this one; zero where none diffuses
 };
 
@@ -69,12 +69,13 @@ class SinterStep {
     /// What the force of one pair depends on besides the motion, for one geometry.
     struct PairForce {
         Vec3 normal;                                 // unit vector, from i to j
-        double overlap, cubic, goal, drive, tangential;  // h; K/I; h at the end if alone; share of f; kt
+        double overlap, cubic, isolated_end, driving, tangential;  // h; K/I; h at the end if alone; fraction of f; kt
     };
     /// Relative motion of pair `row` under a motion, m.
     Vec3 relative(std::size_t row, const Motion& motion) const;
-    /// Of a pair with this normal that touches for a share of the step; goal, end_overlap: overlap at the end, alone and expected.
-    PairForce pair_force(std::size_t row, const Vec3& normal, double share, double goal, double end_overlap) const;
+    /// Of a pair with this normal that touches for a fraction of the step; isolated_end, end_overlap: overlap at the end, alone
+    /// and expected.
+    PairForce pair_force(std::size_t row, const Vec3& normal, double fraction, double isolated_end, double end_overlap) const;
     void start_geometry();
     void midpoint_geometry(const Motion& motion);
     void take_geometry();
@@ -97,11 +98,11 @@ class SinterStep {
     ContactNetwork network_;
     std::vector<RigidClusters> coarse_;  // of particles that slow contacts tie together
     std::variant<std::unique_ptr<TangentSolver<float>>, std::unique_ptr<TangentSolver<double>>> solver_;
-    ClosingLimits limits_;
+    UnilateralConstraints limits_;
     std::vector<PairForce> rows_, entries_;  // of the pairs, and in the order of the network
     std::vector<Vec3> branch_;               // a row a pair, m
     std::vector<double> total_;
-    Motion drive_, unbalanced_, direction_;  // drive_: the driving forces alone
+    Motion driving_forces_, unbalanced_, direction_;  // driving_forces_: the driving forces alone
     Vec3 pressure_volume_ = Vec3::Zero();  // work of the pressure for a unit strain along each axis
     Vec3 strain_force_ = Vec3::Zero();     // work of the contacts for the same, in the last call of forces()
     double work_ = 0.0;                    // of the driving forces in the last call of forces()

@@ -12,8 +12,8 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr double list_room = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
-constexpr double room_ahead = 2.0;    // of the travel of a fast particle, that is made room for
+constexpr double list_margin = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
+constexpr double margin_ahead = 2.0;    // of the travel of a fast particle, that the margin leaves
 constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
 
 }  // namespace
@@ -24,26 +24,26 @@ SinteringBody::SinteringBody(State state, Faces faces) : state_(std::move(state)
     if (state_.bonds) throw Error("the state has bonds; sintering takes a packing without them");
     for (Vec3& position : particles.position) position = state_.box.wrap(position);
     if (faces != Faces::as_given) state_.box.periodic.fill(faces == Faces::periodic);
-    largest_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());
+    max_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());
     solid_ = particle_volume(particles);
     mean_radius_ = std::cbrt(solid_ / static_cast<double>(particles.size()) * 0.75 / std::numbers::pi);
-    order_ = spatial_order(state_.box, particles.position, 2.0 * largest_radius_);
+    order_ = spatial_order(state_.box, particles.position, 2.0 * max_radius_);
     particles = take_rows(particles, order_);
     density_ = solid_ / state_.box.volume();
-    list_pairs(list_room * mean_radius_);
+    list_pairs(list_margin * mean_radius_);
 }
 
-void SinteringBody::list_pairs(double room) {
-    room_.assign(size(), room);
+void SinteringBody::list_pairs(double margin) {
+    margin_.assign(size(), margin);
     find_pairs();
 }
 
 void SinteringBody::find_pairs() {
     const Particles& particles = state_.particles;
     std::vector<double> reach = particles.radius;
-    for (std::size_t row = 0; row < size(); ++row) reach[row] += room_[row];
+    for (std::size_t row = 0; row < size(); ++row) reach[row] += margin_[row];
     pairs_ = kiln::find_pairs(state_.box, particles.position, reach);
-    least_room_ = *std::min_element(room_.begin(), room_.end());
+    min_margin_ = *std::min_element(margin_.begin(), margin_.end());
     ++lists_;
     for (const Pair& pair : pairs_) {
         const auto [first, second] = radii(pair);
@@ -53,28 +53,28 @@ void SinteringBody::find_pairs() {
     }
 }
 
-/// Bound of what a particle's motion takes off the gaps to particles beyond its room, m: they close by no more than both travel.
+/// Bound of what a particle's motion takes off the gaps to particles beyond its margin, m: they close by no more than both travel.
 double SinteringBody::travel(std::size_t row, const Motion& motion) const {
     return Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm() +
-           motion.strain.cwiseAbs().maxCoeff() * (state_.particles.radius[row] + room_[row]);
+           motion.strain.cwiseAbs().maxCoeff() * (state_.particles.radius[row] + margin_[row]);
 }
 
 void SinteringBody::cover(const Motion& motion, double factor) {
     bool covered = true;
 #pragma omp parallel for schedule(static) reduction(&& : covered) if (size() >= worth_threads)
-    for (std::size_t row = 0; row < size(); ++row) covered = covered && factor * travel(row, motion) <= room_[row];
+    for (std::size_t row = 0; row < size(); ++row) covered = covered && factor * travel(row, motion) <= margin_[row];
     if (covered) return;
     for (std::size_t row = 0; row < size(); ++row)
-        room_[row] = std::clamp(room_ahead * factor * travel(row, motion), list_room * mean_radius_, mean_radius_);
+        margin_[row] = std::clamp(margin_ahead * factor * travel(row, motion), list_margin * mean_radius_, mean_radius_);
     find_pairs();
 }
 
-double SinteringBody::closing_bound(const Motion& motion) const {
+double SinteringBody::approach_bound(const Motion& motion) const {
     double largest = 0.0;
 #pragma omp parallel for schedule(static) reduction(max : largest) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row)
         largest = std::max(largest, Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm());
-    return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * 2.0 * largest_radius_;
+    return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * 2.0 * max_radius_;
 }
 
 Vec3 SinteringBody::body_stretch(const Motion& motion) const {
@@ -96,7 +96,7 @@ Vec3 SinteringBody::body_stretch(const Motion& motion) const {
     }
     const Vec3 spread = square / mass - (sum / mass).cwiseAbs2(),
                spread_after = square_after / mass - (sum_after / mass).cwiseAbs2();
-    const double least = 1e-12 * largest_radius_ * largest_radius_;  // a body of one layer does not shrink across it
+    const double least = 1e-12 * max_radius_ * max_radius_;  // a body of one layer does not shrink across it
     for (int axis = 0; axis < 3; ++axis)
         if (!periodic[static_cast<std::size_t>(axis)] && spread[axis] > least)
             stretch[axis] = std::sqrt(spread_after[axis] / spread[axis]);
@@ -115,8 +115,8 @@ void SinteringBody::apply(const Motion& motion, double until, double temperature
     double least = std::numeric_limits<double>::infinity();
 #pragma omp parallel for schedule(static) reduction(min : least) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row) {
-        room_[row] -= travel(row, motion);
-        least = std::min(least, room_[row]);
+        margin_[row] -= travel(row, motion);
+        least = std::min(least, margin_[row]);
         Vec3& position = state_.particles.position[row];
         position = box.origin + stretch.cwiseProduct(position - box.origin) + Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
     }
@@ -128,7 +128,7 @@ void SinteringBody::apply(const Motion& motion, double until, double temperature
     state_.time = until;
     state_.temperature = temperature;
     density_ = solid_ / state_.box.volume();
-    least_room_ = least;
+    min_margin_ = least;
 }
 
 State SinteringBody::state() const {
@@ -148,7 +148,7 @@ void SinteringBody::restore(const Box& box, std::vector<Vec3> position, double t
     state_.temperature = temperature;
     strain_ = strain;
     density_ = solid_ / state_.box.volume();
-    list_pairs(list_room * mean_radius_);
+    list_pairs(list_margin * mean_radius_);
 }
 
 }  // namespace kiln::sintering

@@ -29,16 +29,16 @@ class SinteringBody {
     const Vec3& strain() const { return strain_; }      // logarithmic, since the start
     double mean_radius() const { return mean_radius_; }  // m, that of the mean volume
 
-    /// Pairs that touch or may come to touch while each particle has room left to travel; sorted.
+    /// Pairs that touch or may come to touch while each particle has margin left to travel; sorted.
     const std::vector<Pair>& pairs() const { return pairs_; }
 
     /// Makes the list of pairs hold all that touch under `factor` times a motion, if it does not.
     void cover(const Motion& motion, double factor = 1.0);
 
-    /// Lists the pairs anew, with the same room (m) for each particle.
-    void list_pairs(double room);
+    /// Lists the pairs anew, with the same margin (m) for each particle.
+    void list_pairs(double margin);
 
-    double least_room() const { return least_room_; }  // m, of any particle
+    double min_margin() const { return min_margin_; }  // m, of any particle
     int lists() const { return lists_; }               // of pairs that were made so far
 
     /// Vector between the centres of a pair, m; its radii, m.
@@ -49,7 +49,7 @@ class SinteringBody {
     }
 
     /// Bound of how much any gap closes under a motion, m.
-    double closing_bound(const Motion& motion) const;
+    double approach_bound(const Motion& motion) const;
 
     /// Change of the logarithm of the density under a motion. Along an axis that is not periodic the body's extent is the root mean
     /// square distance of its mass from its centre, which the box follows.
@@ -74,10 +74,10 @@ class SinteringBody {
     State state_;
     std::vector<std::int32_t> order_;  // row in the input of each present row
     std::vector<Pair> pairs_;
-    std::vector<double> room_;  // how far each particle may still travel under the present list, m
-    double least_room_ = 0.0;   // of them all, m
+    std::vector<double> margin_;  // how far each particle may still travel under the present list, m
+    double min_margin_ = 0.0;   // of them all, m
     int lists_ = 0;
-    double largest_radius_ = 0.0, mean_radius_ = 0.0;  // m
+    double max_radius_ = 0.0, mean_radius_ = 0.0;  // m
     double solid_ = 0.0;                               // volume of the particles, m3
     double density_ = 0.0;
     Vec3 strain_ = Vec3::Zero();

@@ -67,11 +67,11 @@ inline double pair_law(double overlap, double reduced, double time) {
     return std::cbrt(overlap * overlap * overlap + 3.375 * diffusion() * surface_energy() * time / reduced);
 }
 
-inline State random_packing(std::int64_t count, double density, double scale) {
+inline State random_packing(std::int64_t count, double density, double scale, std::uint64_t seed = 5) {
     packing::PackingOptions wanted;
     wanted.particles = count;
     wanted.density = density;
-    wanted.seed = 5;
+    wanted.seed = seed;
     State state = packing::pack(wanted, [](const packing::Relaxation&) { return true; });
     state.materials = {physics::builtin_material("alumina")};
     state.box.lengths *= scale;

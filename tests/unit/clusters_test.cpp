@@ -93,9 +93,9 @@ TEST_CASE("connectivity: pieces stand breadth first from their first particle in
     CHECK(pieces.particle == std::vector<std::int32_t>{6, 5, 3, 2, 1, 0, 4, 7});
     CHECK(pieces.start == std::vector<std::size_t>{0, 2, 7, 8});
     CHECK(pieces.largest() == 1);
-    const mechanics::Incidence incidence = mechanics::find_incidence(8, bonds);
-    CHECK(incidence.start == std::vector<std::int64_t>{0, 1, 4, 6, 7, 8, 9, 10, 11});
-    CHECK(incidence.bond == std::vector<std::int32_t>{0, 0, 1, 4, 1, 3, 3, 4, 2, 2, 5});
+    const Grouping<std::int32_t> incidence = mechanics::find_incidence(8, bonds);
+    CHECK(incidence.begin == std::vector<std::size_t>{0, 1, 4, 6, 7, 8, 9, 10, 11});
+    CHECK(incidence.items == std::vector<std::int32_t>{0, 0, 1, 4, 1, 3, 3, 4, 2, 2, 5});
 }
 
 TEST_CASE("connectivity: of pieces of one size the first is the largest, and no particles are no pieces") {

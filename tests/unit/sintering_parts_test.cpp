@@ -1,4 +1,5 @@
-// sintering_parts_test.cpp: the parts that sintering is made of, each by itself: clusters, candidates, constraints, pairs in motion.
+// sintering_parts_test.cpp: the parts that sintering is made of, each by itself: clusters, candidates, constraints, pairs in
+// motion.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -7,7 +8,7 @@
 #include "linalg/conjugate_gradient.h"
 #include "physics/materials.h"
 #include "sintering/candidates.h"
-#include "sintering/closing_limits.h"
+#include "sintering/unilateral_constraints.h"
 #include "sintering/force_balance.h"
 #include "sintering/rigid_clusters.h"
 #include "sintering/tangent_solver.h"
@@ -117,20 +118,20 @@ TEST_CASE("candidates: pairs that touch, pairs that a motion brings to touch, an
     const SinteringBody body(row_of_spheres({10.0, 11.99, 14.05, 16.3}), Faces::as_given);  // overlap 0.01, gaps 0.06 and 0.25
     const Kinetics kinetics(body.working(), physics::Schedule::hold(1473.15));
     Candidates candidates(body, kinetics, {});
-    const std::vector<double> diffusion{1e-30};
+    const std::vector<double> diffusion{1e-9};
     const Motion rest(4);
     candidates.choose(rest, rest, diffusion);
     CHECK(candidates.touching().size() == 1);
     CHECK(candidates.pairs().size() == 1);
     CHECK(candidates.complete(rest));
-    Motion closing(4);
+    Motion approach(4);
     for (std::size_t row = 0; row < 4; ++row)
-        if (body.particles().id[row] == 3) closing.displacement[3 * row] = -0.07;  // closes the gap of 0.06
-    CHECK_FALSE(candidates.complete(closing));
-    candidates.choose(closing, closing, diffusion);
+        if (body.particles().id[row] == 3) approach.displacement[3 * row] = -0.07;  // closes the gap of 0.06
+    CHECK_FALSE(candidates.complete(approach));
+    candidates.choose(approach, approach, diffusion);
     CHECK(candidates.pairs().size() == 2);
     CHECK(candidates.touching().size() == 1);
-    CHECK(candidates.complete(closing));
+    CHECK(candidates.complete(approach));
     candidates.choose(rest, rest, diffusion, true);  // what was chosen stays
     CHECK(candidates.pairs().size() == 2);
     candidates.choose(rest, rest, diffusion);
@@ -143,7 +144,7 @@ TEST_CASE("candidates: pairs that touch, pairs that a motion brings to touch, an
 }
 
 TEST_CASE("a limit of approach is met exactly by a spring of ordinary stiffness, and lets go when it is pulled") {
-    ClosingLimits limits;
+    UnilateralConstraints limits;
     limits.reset(2, 5.0);
     limits.add(1, 0.3, 0.0);
     double approach = 0.0;
@@ -199,7 +200,8 @@ TEST_CASE("a force that is not a number ends a solve with an error") {
     Motion force(2), motion(2);
     force.displacement[0] = std::nan("");
     const auto done = [](const linalg::CgProgress& progress) { return progress.iterations > 10; };
-    CHECK_THROWS_WITH_AS(solver.solve(Eigen::Matrix3d::Zero(), force, motion, done), doctest::Contains("not a finite number"), Error);
+    CHECK_THROWS_WITH_AS(solver.solve(Eigen::Matrix3d::Zero(), force, motion, done), doctest::Contains("not a finite number"),
+                         Error);
     force.displacement = {-1.0, 0.0, 0.0, 1.0, 0.0, 0.0};
     solver.stiffness().set(0, HUGE_VAL, 0.1);
     solver.factorise(std::vector<Vec3>{Vec3::UnitX()});
@@ -209,7 +211,7 @@ TEST_CASE("a force that is not a number ends a solve with an error") {
 TEST_CASE("pairs slower than a stated fraction of the fastest are rigid, and materials that no particle has do not count") {
     State state = row_of_spheres({10.0, 11.9, 13.8});
     const double delta = physics::diffusion_parameter_of(state.materials[0], 1473.15);
-    for (const double fraction : {1e-9, 1e-11, 0.0}) {
+    for (const double fraction : {1e-6, 1e-8, 0.0}) {
         state.materials.resize(1);
         state.materials.push_back(state.materials[0]);
         state.materials[1].name = "slow";
@@ -222,7 +224,7 @@ TEST_CASE("pairs slower than a stated fraction of the fastest are rigid, and mat
         CHECK(kinetics.any_rigid() == (fraction < Kinetics::rigid_fraction));
         CHECK(kinetics.rigid(kinetics.row(1, 1)) == (fraction < Kinetics::rigid_fraction));
         CHECK_FALSE(kinetics.rigid(kinetics.row(0, 0)));
-        CHECK(kinetics.taken_as_rigid().size() == (fraction == 1e-11 ? 2 : 0));  // with itself and with alumina
-        CHECK(kinetics.fastest() == delta);
+        CHECK(kinetics.taken_as_rigid().size() == (fraction == 1e-8 ? 2 : 0));  // with itself and with alumina
+        CHECK(std::abs(kinetics.fastest() / delta - 1.0) < 1e-15);
     }
 }

@@ -1,4 +1,4 @@
-// closing_limits.h: pairs that may close only so far, rigid particles that meet and necks at the dihedral limit.
+// unilateral_constraints.h: pairs that may close only so far, rigid particles that meet and necks at the dihedral limit.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 
 namespace kiln::sintering {
 
-/// Unilateral constraints w <= limit on the closing w of pairs, by augmented Lagrangian: the reaction max(0, lambda + s (w -
+/// Unilateral constraints w <= limit on the approach w of pairs, by augmented Lagrangian: the reaction max(0, lambda + s (w -
 /// limit)) of a spring s with a multiplier lambda that takes over the reaction, so that the limit is met exactly with a spring of
 /// ordinary stiffness. Source: Nocedal & Wright, Numerical Optimization, 2006, section 17.4.
-class ClosingLimits {
+class UnilateralConstraints {
    public:
     /// Forgets all; `pairs` rows without a limit, springs of the given stiffness.
     void reset(std::size_t pairs, double stiffness) {
@@ -33,17 +33,17 @@ class ClosingLimits {
     /// True where the limit carried a force at the last update.
     bool holds(std::size_t row) const { return multiplier_[row] > 0.0; }
 
-    double reaction(std::size_t row, double closing) const {
-        return std::isinf(limit_[row]) ? 0.0 : std::max(0.0, multiplier_[row] + stiffness_ * (closing - limit_[row]));
+    double reaction(std::size_t row, double approach) const {
+        return std::isinf(limit_[row]) ? 0.0 : std::max(0.0, multiplier_[row] + stiffness_ * (approach - limit_[row]));
     }
 
-    /// Moves the reactions into the multipliers; closing(row) is that of the present motion. Returns by how much the worst of the
+    /// Moves the reactions into the multipliers; approach(row) is that of the present motion. Returns by how much the worst of the
     /// limits is missed, over tolerance(row).
     template <typename Closing, typename Tolerance>
-    double update(const Closing& closing, const Tolerance& tolerance) {
+    double update(const Closing& approach, const Tolerance& tolerance) {
         double worst = 0.0;
         for (const std::size_t row : rows_) {
-            const double w = closing(row), next = reaction(row, w);
+            const double w = approach(row), next = reaction(row, w);
             // Beyond the limit, or held back before it by a multiplier that is still too large.
             const double missed = next > 0.0 ? std::abs(w - limit_[row]) : std::max(0.0, w - limit_[row]);
             worst = std::max(worst, missed / tolerance(row));
