@@ -28,7 +28,7 @@ files=("$@")
 [ ${#files[@]} -gt 0 ] || files=(tests/cli/*.bats)
 # A file a processor, where GNU parallel is there to do it.
 jobs=()
-! command -v parallel >/dev/null || jobs=(--jobs "$(nproc)" --no-parallelize-within-files)
+! command -v parallel >/dev/null || [ "$(nproc)" -lt 2 ] || jobs=(--jobs "$(nproc)" --no-parallelize-within-files)
 bats --tap "${jobs[@]}" "${files[@]}" | tee "$log"
 bats_status=${PIPESTATUS[0]}
 bad=$(grep -c '^not ok' "$log")
