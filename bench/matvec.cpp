@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     const std::vector<Vec3> position = packing(edge, box);
     const std::vector<Pair> pairs = find_pairs(box, position, std::vector<double>(position.size(), 0.76));
     const sintering::ContactNetwork network(box, position, pairs);
-    sintering::Stiffness stiffness(network);
+    sintering::Stiffness<float> stiffness(network);
     std::vector<Vec3> levers;
     for (const Pair& pair : pairs) levers.push_back(pair_vector(box, position, pair));
     for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
@@ -81,10 +81,10 @@ int main(int argc, char** argv) {
         stiffness.set_direction(entry, normal);
         stiffness.set(entry, 1.0, 0.1);
     }
-    sintering::QuadMotion in(position.size()), out(position.size());
+    sintering::QuadMotion<float> in(position.size()), out(position.size());
     for (std::size_t row = 0; row < position.size(); ++row)
-        in.displacement[row] = sintering::quad(static_cast<double>(row % 17), static_cast<double>(row % 5), 1.0);
-    std::vector<sintering::Quad> total(position.size());
+        in.displacement[row] = linalg::quad<float>(static_cast<double>(row % 17), static_cast<double>(row % 5), 1.0);
+    std::vector<linalg::Quad<float>> total(position.size());
     const auto particles = static_cast<double>(position.size()), entries = static_cast<double>(network.first.size());
 
     triad(static_cast<std::size_t>(particles) * 32);
@@ -94,12 +94,12 @@ int main(int argc, char** argv) {
             network.for_chunks([&](std::size_t chunk) { stiffness.displace(chunk, in, total); });
             network.for_chunks([&](std::size_t chunk) { stiffness.multiply(chunk, in.strain, total, out); });
         }));
-    sintering::Preconditioner preconditioner(network);
+    sintering::Preconditioner<float> preconditioner(box, network, pairs);
     preconditioner.factorise(stiffness, levers);
     // Twice a block of 36 bytes and its column for each contact inside a chunk; 36 bytes of the diagonal, residual and result.
     double inside = 0.0;
     for (const auto& chunk : network.chunks()) inside += static_cast<double>(chunk.first_only - chunk.begin);
     say("preconditioner", 80.0 * inside + 132.0 * particles, best_seconds([&] {
-            network.for_chunks([&](std::size_t chunk) { preconditioner.apply(network.chunks()[chunk], in, out); });
+            network.for_chunks([&](std::size_t chunk) { preconditioner.apply(chunk, in, out); });
         }));
 }

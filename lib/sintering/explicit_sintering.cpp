@@ -185,6 +185,7 @@ StepRecord ExplicitSintering::advance(double latest_time, double highest_density
     const double start = body_.time(), density = body_.density();
     StepRecord record;
     for (int step = 0; step < max_steps; ++step) {
+        if (step > 0 && settings_.stop && settings_.stop()) break;  // the step that is done stands
         step_once(latest_time, highest_density, record);
         ++record.attempts;
         const bool reached =
