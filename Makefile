@@ -67,7 +67,7 @@ $(BUILD)/test/unit: $(UNIT_OBJECTS) $(TOOL_OBJECTS) $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
-$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/tools/common/tool.o $(BUILD)/libkiln.a
+$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/spatial_order.h"
+#include "io/json.h"
 #include "sintering/preconditioner.h"
 
 namespace {

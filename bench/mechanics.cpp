@@ -7,9 +7,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <random>
 
+#include "core/neighbours.h"
+#include "io/json.h"
 #include "mechanics/elastic_solver.h"
-#include "tests/physics/bonded_lattice.h"
+#include "physics/materials.h"
 
 namespace {
 
@@ -28,13 +31,46 @@ double peak_memory() {
     return static_cast<double>(usage.ru_maxrss) * 1024e-9;
 }
 
+/// Alumina spheres on a simple cubic lattice without order: positions and bond radii at random, neighbours up to 1.25 edges.
+State disordered_bar(int along, int across) {
+    constexpr double edge = 1e-7, neighbour = 1.25, jitter = 0.2;  // m; in edges
+    State state;
+    state.materials.push_back(physics::builtin_material("alumina"));
+    state.box.periodic.fill(false);
+    state.box.lengths = edge * Vec3(along, across, across);
+    std::mt19937 random(7);
+    const auto uniform = [&](double low, double high) { return low + (high - low) * static_cast<double>(random()) / 4294967296.0; };
+    for (int site = 0; site < along * across * across; ++site) {
+        const Vec3 cell(site / (across * across), site / across % across, site % across);
+        Vec3 position = edge * (cell + Vec3::Constant(0.5));
+        for (double& coordinate : position) coordinate += edge * uniform(-jitter, jitter);
+        state.particles.position.push_back(position);
+        state.particles.id.push_back(site);
+    }
+    const std::size_t count = state.particles.position.size();
+    const double radius = 0.45 * neighbour * edge;
+    state.particles.radius.assign(count, radius);
+    state.particles.material.assign(count, 0);
+    Bonds bonds;
+    const std::vector<double> reach(count, 0.505 * neighbour * edge);
+    for (const Pair& pair : find_pairs(state.box, state.particles.position, reach)) {
+        const double distance = pair_vector(state.box, state.particles.position, pair).norm();
+        const double bond_radius = radius * uniform(0.1, 0.98);
+        bonds.pair.push_back({pair.i, pair.j});
+        bonds.image.push_back(pair.image);
+        bonds.radius.push_back(bond_radius);
+        bonds.length.push_back(std::max(0.0, distance - 2.0 * std::sqrt(radius * radius - bond_radius * bond_radius)));
+        bonds.volume.push_back(0.0);
+    }
+    state.bonds = std::move(bonds);
+    return state;
+}
+
 /// A bar `slenderness` times as long as it is high and wide, of about as many particles.
 BondNetwork bar(double particles, double slenderness) {
     const int across = std::max(2, static_cast<int>(std::lround(std::cbrt(particles / slenderness))));
     const int along = static_cast<int>(std::lround(particles / (across * across)));
-    State state = test::make_lattice(
-        {.cells = {along, across, across}, .neighbour = 1.25, .periodic = false, .jitter = 0.2, .random_radii = true});
-    return bonded_body(state, {}).network;
+    return bonded_body(disordered_bar(along, across), {}).network;
 }
 
 /// Three-point bending by point forces, N, without contacts.

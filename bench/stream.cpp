@@ -12,7 +12,6 @@
 #include <functional>
 #include <thread>
 
-#include "tools/common/tool.h"
 #include "io/files.h"
 #include "io/state_io.h"
 
@@ -92,7 +91,7 @@ void feed(const std::string& path, const std::vector<char>& bytes, int flags = 0
 }  // namespace
 
 int main() {
-    cli::keep_freed_memory();  // as in the tools
+    io::keep_freed_memory();  // as in the tools
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("kiln-bench-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
     const std::string file = folder / "state", pipe = folder / "pipe";

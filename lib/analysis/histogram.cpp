@@ -8,26 +8,25 @@
 
 namespace kiln::analysis {
 
-Json histogram_of(std::span<const double> values, std::size_t bins, double lower) {
+Histogram histogram_of(std::span<const double> values, std::size_t bins, double lower) {
     const double upper = values.empty() ? lower : std::ranges::max(values);
     const double width = (upper - lower) / static_cast<double>(bins);
-    std::vector<double> edges(bins + 1);
-    for (std::size_t edge = 0; edge <= bins; ++edge) edges[edge] = lower + static_cast<double>(edge) * width;
-    edges[bins] = upper;  // not a rounding below the largest value
-    std::vector<std::size_t> counts(bins);
+    Histogram histogram{std::vector<double>(bins + 1), std::vector<std::size_t>(bins)};
+    for (std::size_t edge = 0; edge <= bins; ++edge) histogram.edges[edge] = lower + static_cast<double>(edge) * width;
+    histogram.edges[bins] = upper;  // not a rounding below the largest value
     for (const double value : values)
-        ++counts[width > 0.0 ? std::min(static_cast<std::size_t>((value - lower) / width), bins - 1) : 0];
-    return {{"edges", edges}, {"counts", counts}};
+        ++histogram.counts[width > 0.0 ? std::min(static_cast<std::size_t>((value - lower) / width), bins - 1) : 0];
+    return histogram;
 }
 
-Json spread_of(std::span<const double> values) {
-    if (values.empty()) return nullptr;
+std::optional<Spread> spread_of(std::span<const double> values) {
+    if (values.empty()) return std::nullopt;
     const auto count = static_cast<double>(values.size());
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
     double squares = 0.0;
     for (const double value : values) squares += (value - mean) * (value - mean);
     const auto [least, most] = std::ranges::minmax(values);
-    return {{"mean", mean}, {"standard_deviation", std::sqrt(squares / count)}, {"minimum", least}, {"maximum", most}};
+    return Spread{mean, std::sqrt(squares / count), least, most};
 }
 
 }  // namespace kiln::analysis

@@ -1,17 +1,27 @@
 // histogram.h: how values are spread: counts in bins of equal width, and the usual numbers of a distribution.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
-
-#include "core/types.h"
+#include <vector>
 
 namespace kiln::analysis {
 
-/// {edges, counts} of bins of equal width from `lower` to the largest value, which belongs to the last bin; no value is below
-/// `lower`.
-Json histogram_of(std::span<const double> values, std::size_t bins, double lower);
+struct Histogram {
+    std::vector<double> edges;        // one more than there are bins
+    std::vector<std::size_t> counts;  // of each bin
+};
 
-/// {mean, standard_deviation (of the values themselves), minimum, maximum}; null without values.
-Json spread_of(std::span<const double> values);
+/// Bins of equal width from `lower` to the largest value, which belongs to the last bin; no value is below `lower`.
+Histogram histogram_of(std::span<const double> values, std::size_t bins, double lower);
+
+struct Spread {
+    double mean, standard_deviation;  // of the values themselves
+    double minimum, maximum;
+};
+
+/// Nothing without values.
+std::optional<Spread> spread_of(std::span<const double> values);
 
 }  // namespace kiln::analysis

@@ -89,23 +89,6 @@ double mean(std::span<const double> values) {
 
 }  // namespace
 
-Json Summary::json(const Options& options) const {
-    return {{"method", options.method == Method::exact ? "exact" : "sweep"},
-            {"sharing", options.sharing == Sharing::pair ? "pair" : "particle"},
-            {"volume", options.volume == physics::BondVolume::cylinder ? "cylinder" : "cap-corrected"},
-            {"pairs", pairs},
-            {"bonds", bonds},
-            {"mean_diameter", mean_diameter},
-            {"mean_length", mean_length},
-            {"coordination_number", coordination_number},
-            {"clamped", clamped},
-            {"lost_volume", lost_volume},
-            {"thin", thin},
-            {"dropped_volume", dropped_volume},
-            {"stopped", stopped},
-            {"volume_error", volume_error}};
-}
-
 Summary bondify(State& state, const Options& options, const Watch& watch) {
     Particles& particles = state.particles;
     const std::vector<Pair> pairs = find_pairs(state.box, particles.position, particles.radius);

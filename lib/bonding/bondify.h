@@ -34,8 +34,6 @@ struct Summary {
     std::size_t stopped = 0;         // particles that came down to smallest_share of their radius
     double volume_error = 0.0;       // solid volume after, dropped bonds included, over before, minus one
     bool finished = true;            // false: the watch asked to stop; the state is untouched
-
-    Json json(const Options& options) const;
 };
 
 /// Shrinks the particles of the state and fills its bonds in the order of find_pairs, replacing those it had.

@@ -24,7 +24,7 @@ struct Material {
     std::optional<double> dihedral_angle;       // rad
     std::optional<double> young_modulus;        // Pa
     std::optional<double> poisson_ratio;
-    Json other = Json::object();  // unknown keys, carried through
+    std::string other = "{}";  // JSON of unknown keys, carried through; only lib/io looks inside
 };
 
 /// What holds between two unlike materials, in place of the mixing rule.
@@ -63,8 +63,8 @@ struct State {
     std::vector<MaterialPair> contacts;
     Particles particles;
     std::optional<Bonds> bonds;
-    Json history = Json::array();
-    Json other = Json::object();  // unknown keys of the document, carried through
+    std::string history = "[]";  // JSON, a list with what each program did; only lib/io looks inside
+    std::string other = "{}";    // JSON of unknown keys of the document, carried through
 };
 
 /// Volume of a sphere, m3, of its radius, m.

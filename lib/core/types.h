@@ -4,13 +4,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace kiln {
 
 using Vec3 = Eigen::Vector3d;
-using Json = nlohmann::ordered_json;
 
 /// Periodic image: how many box lengths along x, y, z are added to a position.
 using Image = std::array<std::int8_t, 3>;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/array.h"
-#include "core/types.h"
+#include "io/json.h"
 
 namespace kiln::io {
 

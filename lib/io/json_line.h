@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/types.h"
+#include "io/json_forward.h"
 
 namespace kiln::io {
 
@@ -15,6 +15,15 @@ inline constexpr std::size_t most_keys = 1024;      // of one object, which the 
 /// Throws Error that starts with place: no JSON or no UTF-8, a number too large, a key that stands twice in its object, more
 /// nesting or keys than above.
 Json parse_line(std::string_view line, const std::string& place);
+
+/// JSON has no word for NaN and infinity, and the library would write null: throws Error that starts with where and names the key.
+void check_finite(const Json& json, const std::string& where);
+
+/// JSON as one line of text; what is no UTF-8 in it is replaced.
+std::string text_of(const Json& json);
+
+/// JSON of a text that a State carries; what: for the message of the Error thrown where it is none.
+Json carried_json(const std::string& text, const std::string& what);
 
 /// Text for a message, cut where it is long.
 std::string clipped(const std::string& text);

@@ -54,12 +54,12 @@ Material material_from(const Json& json, const std::string& place) {
     Material material;
     material.name = json["name"].get<std::string>();
     const std::string where = place + ": material '" + clipped(material.name) + "': ";
-    material.other = json;
-    material.other.erase("name");
+    Json other = json;
+    other.erase("name");
     for (const Field& field : fields) {
         if (!json.contains(field.key)) continue;
         material.*field.member = number_from(json[field.key], where + field.key, field.lowest);
-        material.other.erase(field.key);
+        other.erase(field.key);
     }
     if (json.contains(diffusion_key)) {
         const Json& diffusion = json[diffusion_key];
@@ -67,11 +67,12 @@ Material material_from(const Json& json, const std::string& place) {
             throw Error(where + diffusion_key + " needs prefactor and activation_energy");
         material.diffusion_prefactor = number_from(diffusion["prefactor"], where + "prefactor", 0.0);
         material.activation_energy = number_from(diffusion["activation_energy"], where + "activation_energy", 0.0);
-        Json& carried = material.other[diffusion_key];
+        Json& carried = other[diffusion_key];
         carried.erase("prefactor");
         carried.erase("activation_energy");
-        if (carried.empty()) material.other.erase(diffusion_key);
+        if (carried.empty()) other.erase(diffusion_key);
     }
+    material.other = text_of(other);
     return material;
 }
 
@@ -81,7 +82,7 @@ Json material_json(const Material& material) {
         if (material.*field.member) json[field.key] = *(material.*field.member);
     if (material.diffusion_prefactor && material.activation_energy)
         json[diffusion_key] = {{"prefactor", *material.diffusion_prefactor}, {"activation_energy", *material.activation_energy}};
-    put_back(json, material.other);
+    put_back(json, carried_json(material.other, "the unknown keys of material '" + material.name + "'"));
     return json;
 }
 

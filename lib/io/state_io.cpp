@@ -206,12 +206,12 @@ State state_from(Document document) {
     state.materials = materials_from(header, place);
     for (const Json& json : list_at(header, "contacts", place))
         state.contacts.push_back(material_pair_from(json, state.materials, place));
-    state.history = list_at(header, "history", place);
+    state.history = text_of(list_at(header, "history", place));
     for (const char* group : {"particles", "bonds"})
         if (header.contains(group)) throw Error(place + ": " + group + " is not an object of arrays");
     state.particles = particles_from(std::move(document.particles), state.materials.size(), place);
     if (document.has_bonds) state.bonds = bonds_from(std::move(document.bonds), state.particles.size(), place);
-    state.other = unknown_keys(std::move(document.header));
+    state.other = text_of(unknown_keys(std::move(document.header)));
     return state;
 }
 

@@ -28,6 +28,12 @@ Material material_from(const Json& json, const std::string& place);
 Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials);
 MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place);
 
+/// What a state's history says: a list, an entry for each program that it went through. Throws Error where it is no such list.
+Json history_of(const State& state);
+
+/// Adds an entry to the history of a state. Throws Error that names a number in it that is not finite.
+void append_history(State& state, const Json& entry);
+
 /// Puts unknown keys back beside the known ones they stood with: into the objects of target, and those of its lists where the
 /// lengths agree. What target has already stays.
 void put_back(Json& target, const Json& carried);

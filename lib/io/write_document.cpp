@@ -4,6 +4,7 @@
 #include "io/array_types.h"
 #include "io/document.h"
 #include "io/files.h"
+#include "io/json_line.h"
 
 namespace kiln::io {
 
@@ -15,13 +16,6 @@ std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignm
 
 void put(std::FILE* file, const std::string& name, const void* data, std::size_t bytes) {
     if (bytes > 0 && std::fwrite(data, 1, bytes, file) != bytes) throw_system_error(name + ": cannot be written");
-}
-
-/// JSON has no word for NaN and infinity; the library would write null.
-void check_finite(const Json& json, const std::string& where) {
-    if (json.is_number_float() && !std::isfinite(json.get<double>())) throw Error(where + " is not a finite number");
-    if (json.is_structured())
-        for (const auto& [key, value] : json.items()) check_finite(value, where + "." + key);
 }
 
 /// Keys of a header that the reader would take for arrays or for their size.
@@ -96,7 +90,7 @@ void write_document(std::FILE* file, const std::string& name, const Document& do
     if (document.has_bonds) add_group("bonds", document.bonds);
     if (!payloads.empty()) header["bytes"] = bytes;
 
-    std::string line = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string line = text_of(header);
     if (!payloads.empty()) line.append(aligned(line.size() + 1) - line.size() - 1, ' ');
     line += '\n';
     put(file, name, line.data(), line.size());

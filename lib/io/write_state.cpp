@@ -2,6 +2,7 @@
 #include <iterator>
 
 #include "io/column.h"
+#include "io/json_line.h"
 #include "io/state_io.h"
 
 namespace kiln::io {
@@ -21,8 +22,8 @@ Json header_from(const State& state) {
     header["materials"] = Json::array();
     for (const Material& material : state.materials) header["materials"].push_back(material_json(material));
     for (const MaterialPair& pair : state.contacts) header["contacts"].push_back(material_pair_json(pair, state.materials));
-    put_back(header, state.other);
-    header["history"] = state.history;
+    put_back(header, carried_json(state.other, "the unknown keys of the state"));
+    header["history"] = history_of(state);
     return header;
 }
 
@@ -31,6 +32,19 @@ void move_to_end(std::vector<NamedArray>& target, std::vector<NamedArray>& sourc
 }
 
 }  // namespace
+
+Json history_of(const State& state) {
+    Json history = carried_json(state.history, "the history of the state");
+    if (!history.is_array()) throw Error("the history of the state is no list");
+    return history;
+}
+
+void append_history(State& state, const Json& entry) {
+    check_finite(entry, std::string(where) + "history");
+    Json history = history_of(state);
+    history.push_back(entry);
+    state.history = text_of(history);
+}
 
 Document document_from(State state) {
     Document document;

@@ -202,17 +202,17 @@ StepRecord ExplicitSintering::advance(double latest_time, double highest_density
     return record;
 }
 
-Json ExplicitSintering::numbers() const { return {{"strain_rate", triple(strain_rate_)}}; }
+Numbers ExplicitSintering::numbers() const { return {{"strain_rate", triple(strain_rate_)}}; }
 
 std::vector<NamedArray> ExplicitSintering::arrays() const {
     return {{"velocity", {{body_.size(), 3}, motion_over(1.0).displacement}}};
 }
 
-void ExplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
+void ExplicitSintering::take_up(const Numbers& numbers, const std::vector<NamedArray>& arrays) {
     const std::vector<double> velocity = column_of(arrays, "velocity", body_.size());
     for (std::size_t particle = 0; particle < body_.size(); ++particle)
         velocity_[particle] = Eigen::Map<const Vec3>(&velocity[3 * particle]);
-    strain_rate_ = triple_from(numbers.at("strain_rate"));
+    strain_rate_ = triple_at(numbers, "strain_rate");
     list_pairs();
 }
 

@@ -28,9 +28,9 @@ class ExplicitSintering : public SinteringMethod {
         Vec3 force = Vec3::Zero();      // of the contacts' force times their vector, J
         Vec3 viscosity = Vec3::Zero();  // of the contacts' viscosity times the square of their vector, J s
     };
-    Json numbers() const override;
+    Numbers numbers() const override;
     std::vector<NamedArray> arrays() const override;
-    void take_up(const Json& numbers, const std::vector<NamedArray>& arrays) override;
+    void take_up(const Numbers& numbers, const std::vector<NamedArray>& arrays) override;
 
     void list_pairs();
     PairForce pair_force(const Pair& pair, const std::vector<double>& diffusion) const;

@@ -277,24 +277,28 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
     return record;
 }
 
-Json ImplicitSintering::numbers() const {
-    return {{"last_rate", last_rate_},         {"rate_before", rate_before_},
-            {"last_duration", last_duration_}, {"next_duration", next_duration_}, {"density_error", error_},
-            {"idle_steps", idle_steps_},       {"last_strain", triple(last_motion_.strain)}};
+Numbers ImplicitSintering::numbers() const {
+    return {{"last_rate", {last_rate_}},
+            {"rate_before", {rate_before_}},
+            {"last_duration", {last_duration_}},
+            {"next_duration", {next_duration_}},
+            {"density_error", {error_}},
+            {"idle_steps", {static_cast<double>(idle_steps_)}},
+            {"last_strain", triple(last_motion_.strain)}};
 }
 
 std::vector<NamedArray> ImplicitSintering::arrays() const {
     return {{"last_motion", {{body_.size(), 3}, scaled(last_motion_, 1.0).displacement}}};
 }
 
-void ImplicitSintering::take_up(const Json& numbers, const std::vector<NamedArray>& arrays) {
-    last_rate_ = numbers.at("last_rate");
-    rate_before_ = numbers.at("rate_before");
-    last_duration_ = numbers.at("last_duration");
-    next_duration_ = numbers.at("next_duration");
-    error_ = numbers.at("density_error");
-    idle_steps_ = numbers.at("idle_steps");
-    last_motion_.strain = triple_from(numbers.at("last_strain"));
+void ImplicitSintering::take_up(const Numbers& numbers, const std::vector<NamedArray>& arrays) {
+    last_rate_ = number_at(numbers, "last_rate");
+    rate_before_ = number_at(numbers, "rate_before");
+    last_duration_ = number_at(numbers, "last_duration");
+    next_duration_ = number_at(numbers, "next_duration");
+    error_ = number_at(numbers, "density_error");
+    idle_steps_ = static_cast<int>(number_at(numbers, "idle_steps"));
+    last_motion_.strain = triple_at(numbers, "last_strain");
     last_motion_.displacement = column_of(arrays, "last_motion", body_.size());
 }
 

@@ -16,9 +16,9 @@ class ImplicitSintering : public SinteringMethod {
     StepRecord advance(double latest_time, double highest_density) override;
 
    private:
-    Json numbers() const override;
+    Numbers numbers() const override;
     std::vector<NamedArray> arrays() const override;
-    void take_up(const Json& numbers, const std::vector<NamedArray>& arrays) override;
+    void take_up(const Numbers& numbers, const std::vector<NamedArray>& arrays) override;
     /// A trial step and what it led to.
     struct Trial {
         Motion motion, first_order;

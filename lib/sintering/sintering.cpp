@@ -5,7 +5,12 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr const char* key = "sintering";  // of the numbers in a checkpoint
+const std::vector<double>& list_at(const Numbers& numbers, const std::string& name, std::size_t length) {
+    const auto found = numbers.find(name);
+    if (found == numbers.end() || found->second.size() != length)
+        throw Error("the checkpoint has no " + name + " of " + std::to_string(length) + (length == 1 ? " number" : " numbers"));
+    return found->second;
+}
 
 }  // namespace
 
@@ -24,30 +29,29 @@ SinteringMethod::SinteringMethod(State state, const SinteringSettings& settings)
             throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
 }
 
-State SinteringMethod::checkpoint() const {
-    State state = body_.working();
-    for (NamedArray& array : arrays()) state.particles.other.push_back(std::move(array));
-    Json own = numbers();
-    own["steps"] = steps_;
-    own["strain"] = triple(body_.strain());
-    state.other[key] = std::move(own);
-    return state;
+double number_at(const Numbers& numbers, const std::string& name) { return list_at(numbers, name, 1).front(); }
+
+Vec3 triple_at(const Numbers& numbers, const std::string& name) {
+    return Eigen::Map<const Vec3>(list_at(numbers, name, 3).data());
 }
 
-void SinteringMethod::restore(const State& checkpoint) {
-    if (checkpoint.particles.size() != body_.size())
-        throw Error("the checkpoint has " + std::to_string(checkpoint.particles.size()) + " particles, the state has " +
+Checkpoint SinteringMethod::checkpoint() const {
+    Checkpoint checkpoint{body_.working(), numbers()};
+    for (NamedArray& array : arrays()) checkpoint.state.particles.other.push_back(std::move(array));
+    checkpoint.numbers["steps"] = {static_cast<double>(steps_)};
+    checkpoint.numbers["strain"] = triple(body_.strain());
+    return checkpoint;
+}
+
+void SinteringMethod::restore(const Checkpoint& checkpoint) {
+    const State& state = checkpoint.state;
+    if (state.particles.size() != body_.size())
+        throw Error("the checkpoint has " + std::to_string(state.particles.size()) + " particles, the state has " +
                     std::to_string(body_.size()));
-    const Json own = checkpoint.other.value(key, Json());
-    if (!own.is_object()) throw Error("the checkpoint has no " + std::string(key));
-    try {
-        body_.restore(checkpoint.box, checkpoint.particles.position, checkpoint.time, checkpoint.temperature.value_or(0.0),
-                         triple_from(own.at("strain")));
-        steps_ = own.at("steps");
-        take_up(own, checkpoint.particles.other);
-    } catch (const Json::exception& error) {
-        throw Error("the checkpoint lacks a number: " + std::string(error.what()));
-    }
+    body_.restore(state.box, state.particles.position, state.time, state.temperature.value_or(0.0),
+                  triple_at(checkpoint.numbers, "strain"));
+    steps_ = static_cast<std::size_t>(number_at(checkpoint.numbers, "steps"));
+    take_up(checkpoint.numbers, state.particles.other);
 }
 
 }  // namespace kiln::sintering

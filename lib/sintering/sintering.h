@@ -3,6 +3,9 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "core/contacts.h"
 #include "core/stop.h"
@@ -39,6 +42,15 @@ struct StepRecord {
     bool converged = true;
 };
 
+/// Numbers by name, one or a vector's three.
+using Numbers = std::map<std::string, std::vector<double>>;
+
+/// All that the next steps of a run depend on.
+struct Checkpoint {
+    State state;  // particles in working order, with arrays of the method among the unknown ones
+    Numbers numbers;
+};
+
 /// A packing and the way it is integrated in time.
 class SinteringMethod {
    public:
@@ -48,13 +60,11 @@ class SinteringMethod {
     /// Throws Error if nothing densifies any more although the step has no latest time.
     virtual StepRecord advance(double latest_time, double highest_density) = 0;
 
-    /// All that the next steps depend on, as a state: particles in working order with further arrays, and numbers under the key
-    /// "sintering".
-    State checkpoint() const;
+    Checkpoint checkpoint() const;
 
     /// Takes up a run from its checkpoint; this must have been made from the same state and settings.
     /// Throws Error where the checkpoint has another number of particles or lacks something.
-    void restore(const State& checkpoint);
+    void restore(const Checkpoint& checkpoint);
 
     const SinteringBody& packing() const { return body_; }
     const Kinetics& kinetics() const { return kinetics_; }
@@ -68,9 +78,9 @@ class SinteringMethod {
     SinteringMethod(State state, const SinteringSettings& settings);
 
     /// Numbers and arrays (a row a particle) of the method itself, and the way back.
-    virtual Json numbers() const = 0;
+    virtual Numbers numbers() const = 0;
     virtual std::vector<NamedArray> arrays() const = 0;
-    virtual void take_up(const Json& numbers, const std::vector<NamedArray>& arrays) = 0;
+    virtual void take_up(const Numbers& numbers, const std::vector<NamedArray>& arrays) = 0;
 
     SinteringSettings settings_;
     SinteringBody body_;
@@ -78,11 +88,12 @@ class SinteringMethod {
     std::size_t steps_ = 0;
 };
 
-/// A vector as JSON, and back.
-inline Json triple(const Vec3& vector) { return {vector[0], vector[1], vector[2]}; }
-inline Vec3 triple_from(const Json& json) {
-    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
-}
+/// A vector as numbers, and back; throws Error where there are none of that name.
+inline std::vector<double> triple(const Vec3& vector) { return {vector[0], vector[1], vector[2]}; }
+Vec3 triple_at(const Numbers& numbers, const std::string& name);
+
+/// A number by its name; throws Error where there is none.
+double number_at(const Numbers& numbers, const std::string& name);
 
 /// The f8 array of three columns and the given number of rows; throws Error where there is none.
 std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::string& name, std::size_t rows);

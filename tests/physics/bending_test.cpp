@@ -10,7 +10,8 @@
 
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
-#include "tools/bend/report.h"
+#include "bending/result_document.h"
+#include "io/json.h"
 #include "bending/static_bending.h"
 
 using namespace kiln;
@@ -192,8 +193,8 @@ TEST_CASE("the same bytes for any number of threads, states included") {
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
         const Result result = tested(test::make_rough_bar({20, 20, 6}));
-        documents.push_back(bend::document(result, {}, Json::array()).dump());
-        for (const Vec3& position : bend::bent_state(result, Json::array()).particles.position)
+        documents.push_back(document(result, {}, Json::array()).dump());
+        for (const Vec3& position : bent_state(result).particles.position)
             for (const double x : position) documents.back() += std::to_string(std::bit_cast<std::uint64_t>(x)) + " ";
     }
     omp_set_num_threads(threads);
@@ -218,7 +219,7 @@ TEST_CASE("gaps that close under load press the particles together: neighbours w
 
 TEST_CASE("compression above, tension below") {
     const Result result = tested(test::make_lattice({.cells = {60, 4, 6}}));
-    const State bent = bend::bent_state(result, Json::array());
+    const State bent = bent_state(result);
     const auto array = [&](const std::string& name) {
         for (const NamedArray& each : bent.bonds->other) {
             if (each.name == name) return std::get<std::vector<double>>(each.array.data);

@@ -8,7 +8,8 @@
 
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
-#include "tools/bend/report.h"
+#include "bending/result_document.h"
+#include "io/json.h"
 #include "bending/static_bending.h"
 
 using namespace kiln;
@@ -124,7 +125,7 @@ TEST_CASE("dynamic bending: the same bytes for any number of threads") {
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
         documents.push_back(
-            bend::document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options, no_stop), options, Json::array()).dump());
+            document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options, no_stop), options, Json::array()).dump());
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);

@@ -13,7 +13,8 @@
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "bending/dynamic_bending.h"
-#include "tools/bend/report.h"
+#include "bending/result_document.h"
+#include "io/json.h"
 #include "bending/static_bending.h"
 
 using namespace kiln;
@@ -261,7 +262,7 @@ TEST_CASE("friction: the same at any scale from 1 nm to 1 m, and the same bytes 
     std::vector<std::string> documents;
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
-        documents.push_back(bend::document(bent(test::make_rough_bar({20, 20, 6}), options), options, Json::array()).dump());
+        documents.push_back(document(bent(test::make_rough_bar({20, 20, 6}), options), options, Json::array()).dump());
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);

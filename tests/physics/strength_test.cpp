@@ -14,8 +14,9 @@
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "bending/equilibria.h"
+#include "bending/result_document.h"
 #include "bending/seating.h"
-#include "tools/bend/report.h"
+#include "io/json.h"
 
 using namespace kiln;
 using namespace kiln::bending;
@@ -88,7 +89,7 @@ TEST_CASE("breaks follow one another: each bond once, work is spent, broken bond
     CHECK(result.failure.dissipated > 0.0);
     CHECK(result.energy_error < 0.01);
     CHECK(result.curve.back().force <= 0.1 * result.peak_force);
-    const State bent = bend::bent_state(result, Json::array());
+    const State bent = bent_state(result);
     CHECK(std::any_of(bent.bonds->other.begin(), bent.bonds->other.end(),
                       [](const NamedArray& each) { return each.name == "broken"; }));
 }
@@ -216,7 +217,7 @@ TEST_CASE("failure: the same bytes for any number of threads") {
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
         const Result result = failed(test::make_rough_bar({26, 8, 8}), options);
-        documents.push_back(bend::document(result, options, Json::array()).dump() + Json(result.broken).dump());
+        documents.push_back(document(result, options, Json::array()).dump() + Json(result.broken).dump());
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);

@@ -56,11 +56,12 @@ void check_shells(const std::vector<double>& found, const std::vector<double>& w
 
 TEST_CASE("histogram: counts by hand, the largest value in the last bin") {
     const std::vector<double> values{0.0, 0.9, 1.0, 1.5, 3.9, 4.0};
-    const Json found = analysis::histogram_of(values, 4, 0.0);
-    CHECK(found["edges"] == Json{0.0, 1.0, 2.0, 3.0, 4.0});
-    CHECK(found["counts"] == Json{2, 2, 0, 2});
-    CHECK(analysis::histogram_of(std::vector{2.0, 2.0}, 3, 2.0)["counts"] == Json{2, 0, 0});  // no width
-    CHECK(analysis::histogram_of({}, 2, 1.0)["counts"] == Json{0, 0});
+    using Counts = std::vector<std::size_t>;
+    const analysis::Histogram found = analysis::histogram_of(values, 4, 0.0);
+    CHECK(found.edges == std::vector{0.0, 1.0, 2.0, 3.0, 4.0});
+    CHECK(found.counts == Counts{2, 2, 0, 2});
+    CHECK(analysis::histogram_of(std::vector{2.0, 2.0}, 3, 2.0).counts == Counts{2, 0, 0});  // no width
+    CHECK(analysis::histogram_of({}, 2, 1.0).counts == Counts{0, 0});
 }
 
 TEST_CASE("histogram: the first and the last edge are the least and the largest value, bit by bit") {
@@ -69,23 +70,23 @@ TEST_CASE("histogram: the first and the last edge are the least and the largest 
         std::vector<double> values;
         for (int value = 0; value < 50; ++value) values.push_back(1e-7 * (0.5 + static_cast<double>(bits() >> 11) * 0x1p-53));
         const auto [least, most] = std::ranges::minmax(values);
-        const Json found = analysis::histogram_of(values, bins, least);
-        const std::vector<double> edges = found["edges"];
-        CHECK(edges.front() == least);
-        CHECK(edges.back() == most);
+        const analysis::Histogram found = analysis::histogram_of(values, bins, least);
+        CHECK(found.edges.front() == least);
+        CHECK(found.edges.back() == most);
         std::size_t counted = 0;
-        for (const std::size_t count : found["counts"]) counted += count;
+        for (const std::size_t count : found.counts) counted += count;
         CHECK(counted == 50);
     }
 }
 
 TEST_CASE("histogram: mean and deviation by hand") {
-    const Json spread = analysis::spread_of(std::vector{1.0, 2.0, 3.0, 6.0});
-    CHECK(spread["mean"] == 3.0);
-    CHECK(spread["standard_deviation"].get<double>() == relative(std::sqrt(14.0 / 4.0), 1e-15));
-    CHECK(spread["minimum"] == 1.0);
-    CHECK(spread["maximum"] == 6.0);
-    CHECK(analysis::spread_of({}).is_null());
+    const auto spread = analysis::spread_of(std::vector{1.0, 2.0, 3.0, 6.0});
+    REQUIRE(spread.has_value());
+    CHECK(spread->mean == 3.0);
+    CHECK(spread->standard_deviation == relative(std::sqrt(14.0 / 4.0), 1e-15));
+    CHECK(spread->minimum == 1.0);
+    CHECK(spread->maximum == 6.0);
+    CHECK_FALSE(analysis::spread_of({}).has_value());
 }
 
 TEST_CASE("pair correlation: the shells of simple and face-centred cubic lattices") {

@@ -57,12 +57,12 @@ void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
         const double* turn = moment->data() + 3 * bond;
         fibre.push_back(physics::bond_stress(tension, 0.0, std::hypot(turn[0], turn[1], turn[2]), 0.0, radius).tensile);
     }
-    result["normal_force"] = analysis::spread_of(*force);
+    result["normal_force"] = spread_json(analysis::spread_of(*force));
     result["compressed_fraction"] = static_cast<double>(std::ranges::count_if(*force, [](double f) { return f < 0.0; })) /
                                     static_cast<double>(force->size());
-    result["normal_stress"] = analysis::spread_of(stress);
-    if (moment) result["fibre_stress"] = analysis::spread_of(fibre);
-    result["force_histogram"] = analysis::histogram_of(*force, bins, std::ranges::min(*force));
+    result["normal_stress"] = spread_json(analysis::spread_of(stress));
+    if (moment) result["fibre_stress"] = spread_json(analysis::spread_of(fibre));
+    result["force_histogram"] = histogram_json(analysis::histogram_of(*force, bins, std::ranges::min(*force)));
 }
 
 Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
@@ -84,7 +84,7 @@ Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
                 {"mean_diameter", diameter},
                 {"mean_length", mean(bonds.length)},
                 {"bond_volume_fraction", bonds.size() == 0 ? 0.0 : in_bonds / (in_bonds + particle_volume(state.particles))},
-                {"histogram", analysis::histogram_of(bonds.radius, bins, 0.0)}};
+                {"histogram", histogram_json(analysis::histogram_of(bonds.radius, bins, 0.0))}};
     add_loads(result, bonds, bins);
     return result;
 }

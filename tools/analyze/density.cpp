@@ -93,7 +93,7 @@ void add_contacts(Json& result, const State& state, std::size_t bins) {
     const std::vector<std::size_t> clusters = analysis::cluster_sizes(particles, contacts);
     const Eigen::Matrix3d fabric = analysis::fabric_tensor(state, contacts);
     const Vec3 principal = fabric.selfadjointView<Eigen::Lower>().eigenvalues();
-    const Json overlap = analysis::spread_of(overlaps);
+    const Json overlap = spread_json(analysis::spread_of(overlaps));
     result["coordination_number"] = particles == 0 ? 0.0 : 2.0 * static_cast<double>(contacts.size()) / count;
     result["mean_overlap_ratio"] = overlap.is_null() ? Json(0.0) : overlap["mean"];
     result["overlap_ratio"] = overlap;
@@ -105,7 +105,7 @@ void add_contacts(Json& result, const State& state, std::size_t bins) {
     result["fabric_tensor"] = Json::array();
     for (int row = 0; row < 3; ++row) result["fabric_tensor"].push_back({fabric(row, 0), fabric(row, 1), fabric(row, 2)});
     result["fabric_anisotropy"] = principal.maxCoeff() - principal.minCoeff();
-    if (bins > 0) result["overlap_histogram"] = analysis::histogram_of(overlaps, bins, 0.0);
+    if (bins > 0) result["overlap_histogram"] = histogram_json(analysis::histogram_of(overlaps, bins, 0.0));
 }
 
 Json density_of(const State& state, const Options& options) {
@@ -121,8 +121,8 @@ Json density_of(const State& state, const Options& options) {
     add_contacts(result, state, options.bins);
     std::vector<double> diameters;
     for (const double radius : state.particles.radius) diameters.push_back(2.0 * radius);
-    result["diameter"] = analysis::spread_of(diameters);
-    if (options.bins > 0) result["diameter_histogram"] = analysis::histogram_of(diameters, options.bins, 0.0);
+    result["diameter"] = spread_json(analysis::spread_of(diameters));
+    if (options.bins > 0) result["diameter_histogram"] = histogram_json(analysis::histogram_of(diameters, options.bins, 0.0));
     if (options.correlation && state.particles.size() > 0) {
         const double range = options.range > 0.0 ? options.range : 4.0 * analysis::mean_diameter(state.particles);
         const analysis::PairCorrelation found = analysis::pair_correlation(state, range, options.correlation_bins);

@@ -57,7 +57,7 @@ Json state_info(io::Document document) {
     entry["arrays"] = arrays;
     entry["materials"] = Json::array();
     for (const Material& material : state.materials) entry["materials"].push_back(io::material_json(material));
-    add_history(entry, state.history);
+    add_history(entry, io::history_of(state));
     return entry;
 }
 

@@ -100,6 +100,18 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
     return cli::done;
 }
 
+Json histogram_json(const analysis::Histogram& histogram) {
+    return {{"edges", histogram.edges}, {"counts", histogram.counts}};
+}
+
+Json spread_json(const std::optional<analysis::Spread>& spread) {
+    if (!spread) return nullptr;
+    return {{"mean", spread->mean},
+            {"standard_deviation", spread->standard_deviation},
+            {"minimum", spread->minimum},
+            {"maximum", spread->maximum}};
+}
+
 std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows) {
     std::vector<std::string> lines(rows.size() + 1);
     for (const Column& column : columns) {

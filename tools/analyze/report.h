@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/common/tool.h"
+#include "analysis/histogram.h"
 #include "io/files.h"
 
 namespace kiln::analyze {
@@ -43,6 +44,12 @@ class Report {
 int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns,
                 const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table = {});
+
+/// {edges, counts}.
+Json histogram_json(const analysis::Histogram& histogram);
+
+/// {mean, standard_deviation, minimum, maximum}; null for nothing.
+Json spread_json(const std::optional<analysis::Spread>& spread);
 
 /// The rows as text: headings with units, numbers with five digits, columns flush right, "-" for what a row does not have. Throws
 /// Error for NaN and infinity, as JSON lines do.

@@ -9,6 +9,7 @@
 #include "analysis/interpolate.h"
 #include "tools/analyze/report.h"
 #include "analysis/structure.h"
+#include "io/state_io.h"
 
 namespace kiln::analyze {
 
@@ -174,7 +175,7 @@ int select(int argc, char** argv) {
     for (const Choice& choice : choices) {
         State state = *choice.state;
         const Json summary{{"by", options.key()}, {"wanted", choice.wanted}, {"value", choice.value}, {"states", states}};
-        state.history.push_back(cli::history_entry("analyze select", app, summary));
+        io::append_history(state, cli::history_entry("analyze select", app, summary));
         output.write(std::move(state));
     }
     output.commit();

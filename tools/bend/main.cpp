@@ -4,12 +4,13 @@
 
 #include "bending/dynamic_bending.h"
 #include "bending/failure.h"
+#include "bending/result_document.h"
 #include "bending/static_bending.h"
 #include "tools/common/progress.h"
 #include "tools/common/tool.h"
 #include "io/files.h"
+#include "io/state_io.h"
 #include "tools/bend/options.h"
-#include "tools/bend/report.h"
 
 namespace {
 
@@ -38,7 +39,7 @@ int run(int argc, char** argv) {
     std::size_t number = 0;
     while (auto state = input.next_state()) {
         const std::string name = "state " + std::to_string(++number);
-        Json history = state->history;
+        Json history = io::history_of(*state);
         const bending::Watch watch = [&](double done) {
             progress.show(done, name);
             return !cli::stop_requested();
@@ -51,9 +52,13 @@ int run(int argc, char** argv) {
         progress.clear();
         if (!common.quiet) warn(name, result);
         converged = converged && result.converged;
-        history.push_back(cli::history_entry("bend", app, bend::summary(result)));
-        output.write(bend::document(result, options, history));
-        if (states) states->write(bend::bent_state(result, history));
+        const Json entry = cli::history_entry("bend", app, bending::summary(result));
+        history.push_back(entry);
+        output.write(bending::document(result, options, history));
+        if (!states) continue;
+        State bent = bending::bent_state(result);
+        io::append_history(bent, entry);
+        states->write(std::move(bent));
     }
     output.commit();
     if (states) states->commit();

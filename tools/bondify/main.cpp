@@ -5,6 +5,7 @@
 #include "tools/common/progress.h"
 #include "tools/common/tool.h"
 #include "io/files.h"
+#include "io/state_io.h"
 #include "tools/bondify/options.h"
 
 namespace {
@@ -27,6 +28,24 @@ void report(const bonding::Summary& summary, const bonding::Options& options, st
         warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::smallest_share, " % of their radius");
     if (options.drop_thin && summary.thin > 0)
         warn(summary.thin, " thin bonds are left out, and ", summary.dropped_volume, " m3 of solid with them");
+}
+
+/// What the history of a state says about its transition.
+Json summary_json(const bonding::Summary& summary, const bonding::Options& options) {
+    return {{"method", options.method == bonding::Method::exact ? "exact" : "sweep"},
+            {"sharing", options.sharing == bonding::Sharing::pair ? "pair" : "particle"},
+            {"volume", options.volume == physics::BondVolume::cylinder ? "cylinder" : "cap-corrected"},
+            {"pairs", summary.pairs},
+            {"bonds", summary.bonds},
+            {"mean_diameter", summary.mean_diameter},
+            {"mean_length", summary.mean_length},
+            {"coordination_number", summary.coordination_number},
+            {"clamped", summary.clamped},
+            {"lost_volume", summary.lost_volume},
+            {"thin", summary.thin},
+            {"dropped_volume", summary.dropped_volume},
+            {"stopped", summary.stopped},
+            {"volume_error", summary.volume_error}};
 }
 
 int run(int argc, char** argv) {
@@ -53,9 +72,9 @@ int run(int argc, char** argv) {
         if (!summary.finished) return cli::interrupted;
         progress.clear();
         if (!common.quiet) report(summary, options, number);
-        const Json json = summary.json(options);
+        const Json json = summary_json(summary, options);
         progress.detail(json);
-        state->history.push_back(cli::history_entry("bondify", app, json));
+        io::append_history(*state, cli::history_entry("bondify", app, json));
         output.write(std::move(*state));
     }
     output.commit();

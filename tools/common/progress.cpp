@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "io/json.h"
 #include "tools/common/tool.h"
 
 namespace kiln::cli {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "core/types.h"
+#include "io/json_forward.h"
 
 namespace kiln::cli {
 

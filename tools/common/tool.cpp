@@ -2,7 +2,6 @@
 #include "tools/common/tool.h"
 
 #include <CLI/CLI.hpp>
-#include <malloc.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -87,14 +86,9 @@ void Common::add_to(CLI::App& app, bool reads, bool writes_states) {
     add_help(app);
 }
 
-void keep_freed_memory() {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // bytes; the largest that glibc takes
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
-}
-
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body) {
     watch_signals();
-    keep_freed_memory();
+    io::keep_freed_memory();
     const auto say = [&](const std::string& sentence) { std::cerr << tool << ": " << one_line(sentence) << "\n"; };
     try {
         const int status = body(argc, argv);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.h"
+#include "io/json_forward.h"
 
 namespace CLI {
 class App;
@@ -33,10 +33,6 @@ struct Common {
     /// program's own options come first in --help. `reads`: takes input files; `writes_states`: what --text has an effect on.
     void add_to(CLI::App& app, bool reads = true, bool writes_states = true);
 };
-
-/// Lets the program keep the memory that it frees. A page that comes fresh from the system costs more time than reading 4 KB into
-/// it, and states come one after the other. run() calls it.
-void keep_freed_memory();
 
 /// Runs a tool: body adds its options to an app, parses, works and returns its status. This function is the only catch: it turns
 /// exceptions into one sentence "tool: …" on stderr and an exit status.

@@ -4,11 +4,14 @@
 #include <cstring>
 #include <filesystem>
 
+#include "io/json_line.h"
+
 namespace kiln::sinter {
 
 namespace {
 
 constexpr const char* key = "checkpoint";
+constexpr const char* numbers_key = "sintering";
 
 void mix(std::uint64_t& hash, const void* data, std::size_t bytes) {
     const auto* byte = static_cast<const unsigned char*>(data);
@@ -33,11 +36,12 @@ Checkpoint::Checkpoint(const Options& options, Json arguments)
 std::optional<Progressed> Checkpoint::read() {
     if (!wanted() || !resume_ || !std::filesystem::exists(file_)) return std::nullopt;
     io::Input input({file_});
-    state_ = input.next_state();
-    const auto found = state_->other.find(key);
-    if (found == state_->other.end()) throw Error(file_ + ": is no checkpoint of sinter");
-    const Json& own = *found;
+    checkpoint_ = {.state = std::move(*input.next_state()), .numbers = {}};
+    const Json carried = io::carried_json(checkpoint_->state.other, file_);
+    if (!carried.contains(key) || !carried.contains(numbers_key)) throw Error(file_ + ": is no checkpoint of sinter");
+    const Json& own = carried[key];
     try {
+        checkpoint_->numbers = carried[numbers_key].get<sintering::Numbers>();
         if (own.at("arguments") != arguments_)
             throw Error(file_ + ": is of a run with other options, " + own.at("arguments").dump() + "; delete it to begin anew");
         return Progressed{.document = own.at("document"),
@@ -55,8 +59,11 @@ std::optional<Progressed> Checkpoint::read() {
 
 bool Checkpoint::due() const { return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= interval_; }
 
-void Checkpoint::write(State state, Progressed progressed) {
-    state.other[key] = {{"document", progressed.document},
+void Checkpoint::write(sintering::Checkpoint checkpoint, const Progressed& progressed) {
+    Json carried = io::carried_json(checkpoint.state.other, file_);
+    io::check_finite(Json(checkpoint.numbers), file_);
+    carried[numbers_key] = checkpoint.numbers;
+    carried[key] = {{"document", progressed.document},
                         {"fingerprint", progressed.fingerprint},
                         {"arguments", arguments_},
                         {"output_bytes", progressed.output_bytes},
@@ -65,8 +72,9 @@ void Checkpoint::write(State state, Progressed progressed) {
                         {"conjugate_gradients", progressed.conjugate_gradients},
                         {"converged", progressed.converged},
                         {"finished", progressed.finished}};
+    checkpoint.state.other = io::text_of(carried);
     io::Output output(file_, false, io::Resumption{.take_up = true});  // a checkpoint that kill -9 interrupted is written over
-    output.write(std::move(state));
+    output.write(std::move(checkpoint.state));
     output.commit();
     last_ = Clock::now();
 }

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "io/files.h"
-#include "options.h"
+#include "sintering/sintering.h"
+#include "tools/sinter/options.h"
 
 namespace kiln::sinter {
 
@@ -33,13 +34,13 @@ class Checkpoint {
     /// What the file says, if --resume was given and the file is there. Throws Error where other options were given then.
     std::optional<Progressed> read();
 
-    /// The state to go on from, once read() has found one.
-    const State& state() const { return *state_; }
+    /// Where to go on from, once read() has found one.
+    const sintering::Checkpoint& found() const { return *checkpoint_; }
 
     /// True when the next checkpoint is due by the wall clock.
     bool due() const;
 
-    void write(State state, Progressed progressed);
+    void write(sintering::Checkpoint checkpoint, const Progressed& progressed);
 
     /// Takes the file away at the end of the run.
     void remove() const;
@@ -50,7 +51,7 @@ class Checkpoint {
     bool resume_;
     double interval_;  // s
     Json arguments_;
-    std::optional<State> state_;
+    std::optional<sintering::Checkpoint> checkpoint_;
     Clock::time_point last_ = Clock::now();
 };
 

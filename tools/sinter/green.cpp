@@ -82,7 +82,7 @@ int green(int argc, char** argv) {
     });
     progress.clear();
     state.materials = {material};
-    state.history.push_back(cli::history_entry("sinter green", app, summary_of(options.packing, state)));
+    io::append_history(state, cli::history_entry("sinter green", app, summary_of(options.packing, state)));
     output.write(std::move(state));
     output.commit();
     return cli::done;

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "io/json.h"
 #include "tools/common/quantity_options.h"
 #include "io/schedule_text.h"
 #include "tools/common/value_options.h"

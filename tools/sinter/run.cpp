@@ -10,6 +10,7 @@
 #include "sintering/explicit_sintering.h"
 #include "sintering/implicit_sintering.h"
 #include "sintering/viscosity.h"
+#include "io/state_io.h"
 #include "tools/sinter/wanted.h"
 
 namespace kiln::sinter {
@@ -87,7 +88,7 @@ class Sintered {
           wanted_(options, kiln::relative_density(state), state.time),
           method_(method_of(std::move(state), options)) {}
 
-    void take_up(const State& checkpoint) {
+    void take_up(const sintering::Checkpoint& checkpoint) {
         method_->restore(checkpoint);
         wanted_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
     }
@@ -175,7 +176,7 @@ class Sintered {
             for (const std::string& remark : add_viscosities(summary, reached, options_)) sinks_.warn(remark);
             progressed_.converged = progressed_.converged && summary["viscosity_converged"].get<bool>();
         }
-        reached.history.push_back(sinks_.entry(summary));
+        io::append_history(reached, sinks_.entry(summary));
         sinks_.states.write(std::move(reached));
     }
 
@@ -201,7 +202,7 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
         if (taken_up && progressed.fingerprint != earlier->fingerprint)
             throw Error("the checkpoint is of another input than document " + std::to_string(document + 1));
         last = std::make_unique<Sintered>(std::move(*state), options, sinks, progressed);
-        if (taken_up) last->take_up(sinks.checkpoint.state());
+        if (taken_up) last->take_up(sinks.checkpoint.found());
         last->warn();
         const bool whole = last->run();
         converged = last->progressed().converged;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "io/json.h"
+
 namespace kiln::sinter {
 
 namespace {

@@ -1,12 +1,10 @@
-// report.cpp: results of a bending test as JSON and as a state.
-#include "tools/bend/report.h"
+// result_document.cpp: results of a bending test as JSON and as a state.
+#include "bending/result_document.h"
 
 #include "io/state_io.h"
 #include "physics/bending.h"
 
-namespace kiln::bend {
-
-using bending::DynamicRun, bending::Method, bending::Options, bending::Point, bending::Result, bending::Specimen;
+namespace kiln::bending {
 
 namespace {
 
@@ -61,7 +59,7 @@ Json summary(const Result& result) {
             {"converged", result.converged}};
 }
 
-Json document(const Result& result, const Options& options, Json history) {
+Json document(const Result& result, const Options& options, const Json& history) {
     const Specimen& specimen = result.specimen;
     Json json{{"format", "dem-bend"},
               {"version", io::format_version},
@@ -102,11 +100,11 @@ Json document(const Result& result, const Options& options, Json history) {
         json["residual"] = result.residual;
     }
     json.update(summary(result));
-    json["history"] = std::move(history);
+    json["history"] = history;
     return json;
 }
 
-State bent_state(const Result& result, Json history) {
+State bent_state(const Result& result) {
     const mechanics::BondedBody& body = result.specimen.body;
     const mechanics::BondNetwork& network = body.network;
     State state = result.specimen.state;
@@ -138,8 +136,7 @@ State bent_state(const Result& result, Json history) {
     put(state.bonds->other, {"tensile_stress", {{tensile.size()}, std::move(tensile)}});
     put(state.bonds->other, {"shear_stress", {{shear.size()}, std::move(shear)}});
     if (!result.broken.empty()) put(state.bonds->other, {"broken", {{result.broken.size()}, result.broken}});
-    state.history = std::move(history);
     return state;
 }
 
-}  // namespace kiln::bend
+}  // namespace kiln::bending
