@@ -1,4 +1,4 @@
-"""house.py: habits of the tree that a program can check: what may use what, lengths of lines and files, absolute paths."""
+"""house.py: habits of the tree that a program can check: what may use what, lengths of lines, absolute paths."""
 import os
 import re
 import subprocess

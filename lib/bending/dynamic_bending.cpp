@@ -52,22 +52,21 @@ class Strokes {
                                               : max_deflection_of(result.specimen, options)),
           motion_(make_motion()) {}
 
-    /// False if the watch stopped it.
-    bool run() {
+    void run() {
         for (cycle_ = 0; cycle_ < options_.cycles; ++cycle_) {
-            if (!load() || !unload()) return false;
+            load();
+            unload();
         }
         result_.dynamic.energy = motion_.energy();
         result_.friction_loss = result_.dynamic.energy.friction;
         result_.energy_error = energy_gap_ / (peak_energy_.bonds + peak_energy_.contacts);
-        return true;
     }
 
    private:
     mechanics::ExplicitMotion make_motion();
-    bool advance(double heading, double share);
-    bool load();
-    bool unload();
+    void advance(double heading, double share);
+    void load();
+    void unload();
     void record();
     void keep_peak();
     Point now() const {
@@ -113,7 +112,7 @@ mechanics::ExplicitMotion Strokes::make_motion() {
 }
 
 /// Some steps with the punch going down (heading 1) or up (-1); it takes one period of the bar to turn from rest to full speed.
-bool Strokes::advance(double heading, double share) {
+void Strokes::advance(double heading, double share) {
     const double dt = motion_.time_step(), change = velocity_ * dt / period_;
     for (int step = 0; step < steps_between_looks; ++step) {
         punch_velocity_ += std::clamp(heading * velocity_ - punch_velocity_, -change, change);
@@ -123,7 +122,7 @@ bool Strokes::advance(double heading, double share) {
     }
     result_.dynamic.steps += steps_between_looks;
     if (!std::isfinite(motion_.contacts().punch_force())) throw Error("the motion of the bar grew without bounds");
-    return watch_((cycle_ + std::clamp(share, 0.0, 1.0)) / options_.cycles);
+    watch_.at((cycle_ + std::clamp(share, 0.0, 1.0)) / options_.cycles);
 }
 
 void Strokes::record() {
@@ -150,7 +149,7 @@ void Strokes::keep_peak() {
 }
 
 /// Down until the punch stands still at about the wanted deflection: it turns early enough to stop there.
-bool Strokes::load() {
+void Strokes::load() {
     const double limit = motion_.travel() + longest_travel * deflection_ + 0.5 * result_.specimen.size[2];
     int next = 1;
     for (bool turning = false; !turning || punch_velocity_ > 0.0;) {
@@ -164,14 +163,13 @@ bool Strokes::load() {
         turning = turning || (here.punch > 0.0 && share * (1.0 + stopping / here.punch) >= 1.0);
         if (here.punch + seat_ > limit)
             throw Error("the punch went through the bar's height without the wanted deflection or force");
-        if (!advance(turning ? -1.0 : 1.0, 0.5 * share)) return false;
+        advance(turning ? -1.0 : 1.0, 0.5 * share);
     }
     keep_peak();
-    return true;
 }
 
 /// Up until the punch is free.
-bool Strokes::unload() {
+void Strokes::unload() {
     const double peak = reached(result_.curve.back());
     int next = options_.points - 1;
     while (motion_.contacts().punch_force() > 0.0) {
@@ -180,10 +178,9 @@ bool Strokes::unload() {
             record();
             next = static_cast<int>(std::ceil(share * options_.points)) - 1;
         }
-        if (!advance(-1.0, 1.0 - 0.5 * share)) return false;
+        advance(-1.0, 1.0 - 0.5 * share);
     }
     record();
-    return true;
 }
 
 }  // namespace

@@ -44,10 +44,11 @@ WorkOfStep work_of_step(const Level& from, const Level& to) {
     return {mean, range};
 }
 
-Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options)
+Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options,
+                       const StopRequest& stop)
     : network_(specimen.body.network),
       tooling_(find_contacts(specimen, fixture)),
-      solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation),
+      solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation, stop),
       problem_(specimen.body.network, solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction,
                seating_share * expected_force(specimen, fixture, options)),
       gauge_(specimen, fixture),

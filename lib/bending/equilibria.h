@@ -3,6 +3,7 @@
 
 #include "mechanics/contact_problem.h"
 #include "bending/result.h"
+#include "core/stop.h"
 
 namespace kiln::bending {
 
@@ -27,7 +28,8 @@ WorkOfStep work_of_step(const Level& from, const Level& to);
 /// its result.
 class Equilibria {
    public:
-    Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options);
+    /// stop: asked in the solves, which throw Interrupted.
+    Equilibria(const Specimen& specimen, const Fixture& fixture, const Options& options, const StopRequest& stop = {});
     Equilibria(const Equilibria&) = delete;  // the contact problem refers to the solver
     Equilibria& operator=(const Equilibria&) = delete;
 

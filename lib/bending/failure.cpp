@@ -52,11 +52,11 @@ double middle_force(double one, double other) {
 /// A bar that loses its bonds one after the other.
 class Failure {
    public:
-    Failure(Result& result, const Options& options)
+    Failure(Result& result, const Options& options, const StopRequest& stop)
         : result_(result),
           options_(options),
           spheres_(mechanics::elastic_spheres(result.specimen.state, result.specimen.body)),
-          equilibria_(result.specimen, result.fixture, options),
+          equilibria_(result.specimen, result.fixture, options, stop),
           force_(expected_force(result.specimen, result.fixture, options)) {
         result_.broken.assign(result.specimen.body.network.bonds(), 0);
     }
@@ -209,10 +209,8 @@ class Failure {
 
 Result bend_to_failure(State state, const Options& options, const Watch& watch) {
     Result result = prepare(std::move(state), options);
-    Failure failure(result, options);
-    while (failure.next()) {
-        if (!watch(failure.progress())) return result;
-    }
+    Failure failure(result, options, watch.stop);
+    while (failure.next()) watch.at(failure.progress());
     result.energy_error = failure.energy_gap();
     result.peak = std::move(failure.last());
     add_warnings(result, options);

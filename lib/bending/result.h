@@ -1,7 +1,6 @@
 // result.h: what a bending test found, whatever its method.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -68,8 +67,5 @@ void add_warnings(Result& result, const Options& options);
 
 /// Takes what the contacts carry in an equilibrium as that of the greatest force.
 void read_contacts(Result& result, const mechanics::Tooling& tooling, const mechanics::Equilibrium& equilibrium);
-
-/// Called between equilibria with the share of the work done; false stops the test.
-using Watch = std::function<bool(double)>;
 
 }  // namespace kiln::bending

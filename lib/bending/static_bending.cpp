@@ -74,11 +74,11 @@ std::vector<Point> cycled(const std::vector<Level>& levels, int cycles) {
     return curve;
 }
 
-/// All cycles of an elastic bar, from the peak down, unless the watch stops it: each level is solved once.
+/// All cycles of an elastic bar, from the peak down: each level is solved once.
 void cycle_elastic(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
     std::vector<Level> levels{peak};
     for (int point = options.points - 1; point > 0; --point) {
-        if (!watch(1.0 - static_cast<double>(point) / options.points)) return;
+        watch.at(1.0 - static_cast<double>(point) / options.points);
         levels.push_back(equilibria.at(peak.point.force * point / options.points, result));
     }
     std::reverse(levels.begin(), levels.end());
@@ -86,14 +86,14 @@ void cycle_elastic(Equilibria& equilibria, const Level& peak, const Options& opt
     result.curve = cycled(levels, options.cycles);
 }
 
-/// All cycles of a bar with friction, level by level, unless the watch stops it.
+/// All cycles of a bar with friction, level by level.
 void cycle_with_friction(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
     equilibria.release();
     const double before = equilibria.friction_loss();
     for (int cycle = 0; cycle < options.cycles; ++cycle) {
         std::vector<Level> levels;
         for (int step = 1; step < 2 * options.points; ++step) {
-            if (!watch((cycle + 0.5 * step / options.points) / options.cycles)) return;
+            watch.at((cycle + 0.5 * step / options.points) / options.cycles);
             const int point = std::min(step, 2 * options.points - step);
             levels.push_back(equilibria.at(peak.point.force * point / options.points, result));
             equilibria.keep();
@@ -110,7 +110,7 @@ void cycle_with_friction(Equilibria& equilibria, const Level& peak, const Option
 
 Result bend_static(State state, const Options& options, const Watch& watch) {
     Result result = prepare(std::move(state), options);
-    Equilibria equilibria(result.specimen, result.fixture, options);
+    Equilibria equilibria(result.specimen, result.fixture, options, watch.stop);
     const Level peak = peak_level(equilibria, options, result);
     result.peak = std::move(equilibria.last());
     result.loads = mechanics::bond_loads(result.specimen.body.network, result.peak.displacement);

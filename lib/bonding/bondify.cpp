@@ -94,10 +94,9 @@ Summary bondify(State& state, const Options& options, const Watch& watch) {
     const std::vector<Pair> pairs = find_pairs(state.box, particles.position, particles.radius);
     const std::vector<Overlap> overlaps = overlaps_of(state, pairs);
     Shrunk shrunk = options.method == Method::exact
-                        ? shrink_exactly(particles.radius, overlaps, options.sharing)
+                        ? shrink_exactly(particles.radius, overlaps, options.sharing, watch)
                         : shrink_by_sweeps(particles.radius, overlaps, options.sharing, options.decrement, watch);
-    Summary summary{.pairs = pairs.size(), .stopped = shrunk.stopped, .finished = shrunk.finished};
-    if (!summary.finished) return summary;
+    Summary summary{.pairs = pairs.size(), .stopped = shrunk.stopped};
 
     const long double before = solid_volume(particles.radius, {});
     const long double after = solid_volume(shrunk.radius, shrunk.volume);

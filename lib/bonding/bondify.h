@@ -33,11 +33,11 @@ struct Summary {
     double dropped_volume = 0.0;     // m3, of thin bonds left out
     std::size_t stopped = 0;         // particles that came down to smallest_share of their radius
     double volume_error = 0.0;       // solid volume after, dropped bonds included, over before, minus one
-    bool finished = true;            // false: the watch asked to stop; the state is untouched
 };
 
 /// Shrinks the particles of the state and fills its bonds in the order of find_pairs, replacing those it had.
-/// Throws Error naming both ids where centres lie closer than 2 % of the sum of the radii.
-Summary bondify(State& state, const Options& options, const Watch& watch);
+/// Throws Error naming both ids where centres lie closer than 2 % of the sum of the radii. Where it throws, Interrupted too, the
+/// state is as it was.
+Summary bondify(State& state, const Options& options, const Watch& watch = {});
 
 }  // namespace kiln::bonding

@@ -13,6 +13,8 @@ namespace kiln::bonding {
 
 namespace {
 
+constexpr std::size_t turns_between_looks = 10000;  // of the queue; a few milliseconds
+
 /// radius(s) = intercept - rate s, since the last change at s = since.
 struct Particle {
     double intercept;           // m
@@ -69,8 +71,10 @@ class Shrinking {
         std::make_heap(events_.begin(), events_.end(), later);
     }
 
-    Shrunk run() {
-        while (!events_.empty()) {
+    Shrunk run(const Watch& watch) {
+        for (std::size_t turn = 0; !events_.empty(); ++turn) {
+            if (turn % turns_between_looks == 0)
+                watch.at(1.0 - static_cast<double>(events_.size()) / static_cast<double>(overlaps_.size()));
             std::pop_heap(events_.begin(), events_.end(), later);
             Event& event = events_.back();
             const double s = foretell(overlaps_[event.overlap]);
@@ -143,8 +147,8 @@ class Shrinking {
 
 }  // namespace
 
-Shrunk shrink_exactly(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing) {
-    return Shrinking(radius, overlaps, sharing).run();
+Shrunk shrink_exactly(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, const Watch& watch) {
+    return Shrinking(radius, overlaps, sharing).run(watch);
 }
 
 }  // namespace kiln::bonding

@@ -46,10 +46,7 @@ Shrunk shrink_by_sweeps(std::span<const double> radius, std::span<const Overlap>
             if (apart) --count[i], --count[j];
             return apart;
         });
-        if (!watch(1.0 - static_cast<double>(active.size()) / static_cast<double>(overlaps.size()))) {
-            result.finished = false;
-            return result;
-        }
+        watch.at(1.0 - static_cast<double>(active.size()) / static_cast<double>(overlaps.size()));
     }
     for (std::size_t i = 0; i < radius.size(); ++i) result.stopped += result.radius[i] <= smallest[i];
     return result;

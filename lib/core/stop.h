@@ -19,4 +19,16 @@ inline void throw_if_stopped(const StopRequest& stop) {
     if (stop && stop()) throw Interrupted();
 }
 
+/// What long work hears and says on its way. Both may be empty.
+struct Watch {
+    StopRequest stop;
+    std::function<void(double)> progress;  // told the fraction of the work that is done, 0 to 1
+
+    /// The work has come so far. Throws Interrupted if a stop is requested.
+    void at(double fraction) const {
+        if (progress) progress(fraction);
+        throw_if_stopped(stop);
+    }
+};
+
 }  // namespace kiln

@@ -1,10 +1,9 @@
 // array_types.cpp: type names in the order of the alternatives of Array::Data.
 #include "io/array_types.h"
 
-#include "io/json.h"
-
 #include <array>
 
+#include "io/json.h"
 #include "io/json_line.h"
 
 namespace kiln::io {

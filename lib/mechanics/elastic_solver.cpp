@@ -2,6 +2,7 @@
 #include "mechanics/elastic_solver.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kiln::mechanics {
 
@@ -29,8 +30,8 @@ linalg::NodeGeometry geometry_of(const BondNetwork& network) {
 
 }  // namespace
 
-ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground)
-    : matrix_(stiffness_matrix(network)), grounded_(middle_node(network)) {
+ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop)
+    : stop_(std::move(stop)), matrix_(stiffness_matrix(network)), grounded_(middle_node(network)) {
     const auto row = static_cast<std::int32_t>(grounded_);
     for (std::int64_t k = matrix_.first(row); k < matrix_.last(row); ++k) {
         if (matrix_.column[static_cast<std::size_t>(k)] != row) continue;
@@ -44,8 +45,11 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground)
 }
 
 linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
-    return linalg::solve_blocks(
-        matrix_, [this](const Vector& r, Vector& z) { preconditioner_->apply(r, z); }, load, x, tolerance, max_iterations);
+    const auto precondition = [this](const Vector& r, Vector& z) {
+        throw_if_stopped(stop_);
+        preconditioner_->apply(r, z);
+    };
+    return linalg::solve_blocks(matrix_, precondition, load, x, tolerance, max_iterations);
 }
 
 void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double share) {

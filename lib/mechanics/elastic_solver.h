@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/stop.h"
 #include "mechanics/bond_network.h"
 #include "linalg/block_solver.h"
 #include "linalg/multigrid.h"
@@ -18,7 +19,8 @@ enum class Ground {
 
 class ElasticSolver {
    public:
-    ElasticSolver(const BondNetwork& network, Ground ground);
+    /// stop: asked in each iteration of a solve, which throws Interrupted.
+    ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop = {});
     ElasticSolver(const ElasticSolver&) = delete;  // the preconditioner refers to the matrix
     ElasticSolver& operator=(const ElasticSolver&) = delete;
 
@@ -35,6 +37,7 @@ class ElasticSolver {
     linalg::Multigrid& preconditioner() { return *preconditioner_; }
 
    private:
+    StopRequest stop_;
     BlockMatrix matrix_;  // with the ground springs
     std::size_t grounded_ = 0;
     Vec6 ground_ = Vec6::Zero();

@@ -46,8 +46,8 @@ Moduli reuss_moduli(const Mat6& s) {
 
 }  // namespace
 
-ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance) {
-    ElasticSolver solver(network, Ground::displacement);
+ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop) {
+    ElasticSolver solver(network, Ground::displacement, stop);
     ElasticTensor tensor;
     const Vector rest(network.nodes(), Vec6::Zero());
     for (int component = 0; component < 6; ++component) {

@@ -1,6 +1,7 @@
 // elastic_tensor.h: elastic constants of a periodic cell of bonded particles.
 #pragma once
 
+#include "core/stop.h"
 #include "mechanics/bond_network.h"
 
 namespace kiln::mechanics {
@@ -15,7 +16,8 @@ struct ElasticTensor {
 };
 
 /// Six uniform strains of a periodic network in a cell of the given volume, m3, solved one by one with the same preconditioner.
-ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance);
+/// Throws Interrupted.
+ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop = {});
 
 /// What a tensor means for a body without texture.
 struct IsotropicAverage {

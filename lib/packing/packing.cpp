@@ -6,7 +6,6 @@
 
 #include "core/neighbours.h"
 #include "core/spatial_order.h"
-#include "core/stop.h"
 
 namespace kiln::packing {
 
@@ -59,11 +58,10 @@ std::string rounded(double value) {
     return text;
 }
 
-/// Throws the Error that says how far the relaxation came, or Interrupted if it was told to stop.
+/// Throws the Error that says how far the relaxation came.
 void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) {
     if (relaxation.finished) return;
     const std::string steps = std::to_string(relaxation.steps) + " steps";
-    if (!relaxation.jammed && relaxation.steps < RelaxationOptions().most_steps) throw Interrupted();
     const std::string when = (relaxation.jammed ? "jammed after " : "after ") + steps;
     if (options.method == Method::soft)
         throw Error("relative density " + rounded(options.density) + ": " + when + " the mean overlap is " +
@@ -76,7 +74,7 @@ void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) 
 
 }  // namespace
 
-State pack(const PackingOptions& options, const std::function<bool(const Relaxation&)>& watch) {
+State pack(const PackingOptions& options, const StopRequest& stop, const std::function<void(const Relaxation&)>& progress) {
     const bool soft = options.method == Method::soft;
     if (options.method == Method::loose && options.compact_to) throw Error("a loose packing is not compacted; affine ones are");
     if (options.method == Method::affine && !options.compact_to)
@@ -85,7 +83,7 @@ State pack(const PackingOptions& options, const std::function<bool(const Relaxat
     RelaxationOptions wanted;
     wanted.damping = options.damping;
     if (soft) wanted.mean_overlap = options.mean_overlap;
-    check_relaxed(options, relax(state.box, state.particles.radius, state.particles.position, wanted, watch));
+    check_relaxed(options, relax(state.box, state.particles.radius, state.particles.position, wanted, stop, progress));
     scale_to(state, options, options.compact_to.value_or(options.density));
     state.particles = along_curve(state.particles, state.box);
     std::iota(state.particles.id.begin(), state.particles.id.end(), std::int64_t{0});

@@ -30,8 +30,9 @@ struct PackingOptions {
 };
 
 /// A packing in a box that is periodic in three axes, its rows ordered along a space-filling curve; one material, none named yet.
-/// Throws Error where compact_to does not fit the method or the density cannot be reached, and Interrupted where watch ended the
-/// relaxation.
-State pack(const PackingOptions& options, const std::function<bool(const Relaxation&)>& watch);
+/// progress sees each step of the relaxation. Throws Error where compact_to does not fit the method or the density cannot be
+/// reached, and Interrupted.
+State pack(const PackingOptions& options, const StopRequest& stop = {},
+           const std::function<void(const Relaxation&)>& progress = {});
 
 }  // namespace kiln::packing

@@ -116,7 +116,7 @@ double step(std::span<const double> radius, std::span<const Vec3> acceleration, 
 }  // namespace
 
 Relaxation relax(const Box& box, std::span<const double> radius, std::vector<Vec3>& position, const RelaxationOptions& options,
-                 const std::function<bool(const Relaxation&)>& watch) {
+                 const StopRequest& stop, const std::function<void(const Relaxation&)>& progress) {
     const double damping = 2.0 * std::numbers::sqrt2 * options.damping;  // critical damping of h'' = -2 h
     Lists lists;
     make_lists(box, radius, position, lists);
@@ -129,7 +129,9 @@ Relaxation relax(const Box& box, std::span<const double> radius, std::vector<Vec
         now.mean_overlap = sums.touches > 0 ? sums.overlap / static_cast<double>(sums.touches) : 0.0;
         now.finished = now.largest_overlap <= options.largest_overlap || now.mean_overlap <= options.mean_overlap;
         now.jammed = !now.finished && sums.net_square <= at_rest * at_rest * sums.contact_square;
-        if (!watch(now) || now.finished || now.jammed || now.steps == options.most_steps) return now;
+        if (progress) progress(now);
+        if (now.finished || now.jammed || now.steps == options.most_steps) return now;
+        throw_if_stopped(stop);
         if (step(radius, acceleration, damping, lists, velocity, position) > margin) make_lists(box, radius, position, lists);
     }
 }

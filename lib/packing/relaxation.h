@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/box.h"
+#include "core/stop.h"
 
 namespace kiln::packing {
 
@@ -28,9 +29,8 @@ struct Relaxation {
 
 /// Moves the centres (m) from rest. The acceleration by a contact is 2 m_j/(m_i + m_j) h along the contact normal, with m = r^3:
 /// every pair, whatever its sizes, parts at the same rate. Contacts are the fewer the less damping there is, since particles fly on
-/// after they parted. watch sees each step and ends the relaxation by returning false. The result does not depend on the number of
-/// threads.
+/// after they parted. progress sees each step. The result does not depend on the number of threads. Throws Interrupted.
 Relaxation relax(const Box& box, std::span<const double> radius, std::vector<Vec3>& position, const RelaxationOptions& options,
-                 const std::function<bool(const Relaxation&)>& watch);
+                 const StopRequest& stop = {}, const std::function<void(const Relaxation&)>& progress = {});
 
 }  // namespace kiln::packing

@@ -21,7 +21,7 @@ using test::relative;
 namespace {
 
 Result tested(State state, const Options& options = {}) {
-    return bend_static(std::move(state), options, [](double) { return true; });
+    return bend_static(std::move(state), options);
 }
 
 const Point& peak_of(const Result& result, const Options& options = {}) {

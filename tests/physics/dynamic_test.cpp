@@ -18,8 +18,6 @@ using test::relative;
 
 namespace {
 
-const Watch no_stop = [](double) { return true; };
-
 Options dynamic_options() {
     Options options;
     options.method = Method::motion;
@@ -36,7 +34,7 @@ double unloading_slope(const Result& result) {
 double static_slope(const State& state) {
     Options options;
     options.cycles = 1;
-    return unloading_slope(bend_static(state, options, no_stop));
+    return unloading_slope(bend_static(state, options));
 }
 
 }  // namespace
@@ -65,23 +63,23 @@ TEST_CASE("the dynamic slope comes to the static one as the punch slows down; wo
     const State state = test::make_lattice({.cells = {14, 3, 3}});
     const double expected = static_slope(state);
     Options options = dynamic_options();
-    const Result usual = bend_dynamic(state, options, no_stop);
+    const Result usual = bend_dynamic(state, options);
     CHECK(unloading_slope(usual) == relative(expected, 0.01));
     CHECK(usual.energy_error < 1e-3);
-    CHECK(usual.held_span == relative(bend_static(state, {}, no_stop).held_span, 0.01));
+    CHECK(usual.held_span == relative(bend_static(state, {}).held_span, 0.01));
     CHECK(usual.dynamic.energy.damping > 0.0);
     options.punch_velocity = 10.0 * usual.dynamic.velocity;
-    const double fast = unloading_slope(bend_dynamic(state, options, no_stop));
+    const double fast = unloading_slope(bend_dynamic(state, options));
     CHECK(std::abs(fast - expected) > 3.0 * std::abs(unloading_slope(usual) - expected));
 }
 
 TEST_CASE("a punch too fast for the bar to stay in balance is named, and so is what damping took") {
     const State state = test::make_lattice({.cells = {14, 3, 3}});
     Options options = dynamic_options();
-    const Result usual = bend_dynamic(state, options, no_stop);
+    const Result usual = bend_dynamic(state, options);
     CHECK(usual.warnings.empty());
     options.punch_velocity = 8.0 * usual.dynamic.velocity;
-    const Result fast = bend_dynamic(state, options, no_stop);
+    const Result fast = bend_dynamic(state, options);
     REQUIRE(fast.warnings.size() == 1);
     CHECK(fast.warnings.front().find("a lower --punch-velocity") != std::string::npos);
 }
@@ -90,7 +88,7 @@ TEST_CASE("mass scaled by 16: four times the time step and a quarter of the defa
     const State state = test::make_rough_bar({12, 3, 3});
     Options heavy = dynamic_options();
     heavy.mass_scaling = 16.0;
-    const Result usual = bend_dynamic(state, dynamic_options(), no_stop), scaled = bend_dynamic(state, heavy, no_stop);
+    const Result usual = bend_dynamic(state, dynamic_options()), scaled = bend_dynamic(state, heavy);
     CHECK(scaled.dynamic.time_step == 4.0 * usual.dynamic.time_step);
     CHECK(scaled.dynamic.velocity == 0.25 * usual.dynamic.velocity);
     CHECK(scaled.dynamic.steps == usual.dynamic.steps);
@@ -98,9 +96,9 @@ TEST_CASE("mass scaled by 16: four times the time step and a quarter of the defa
 }
 
 TEST_CASE("the dynamic slope does not depend on the scale, from 1 nm to 1 m") {
-    const double slope = unloading_slope(bend_dynamic(test::make_rough_bar({12, 3, 3}), dynamic_options(), no_stop));
+    const double slope = unloading_slope(bend_dynamic(test::make_rough_bar({12, 3, 3}), dynamic_options()));
     for (const double edge : {1e-9, 1.0}) {
-        const Result scaled = bend_dynamic(test::make_rough_bar({12, 3, 3}, edge), dynamic_options(), no_stop);
+        const Result scaled = bend_dynamic(test::make_rough_bar({12, 3, 3}, edge), dynamic_options());
         CHECK(unloading_slope(scaled) == relative(edge / 1e-7 * slope, 1e-3));  // rounding decides at which step a point is read
     }
 }
@@ -109,7 +107,7 @@ TEST_CASE("friction at the cylinders stiffens the bar and takes energy, and the 
     const State state = test::make_lattice({.cells = {14, 3, 3}});
     Options rough = dynamic_options();
     rough.friction = 0.3;
-    const Result free = bend_dynamic(state, dynamic_options(), no_stop), held = bend_dynamic(state, rough, no_stop);
+    const Result free = bend_dynamic(state, dynamic_options()), held = bend_dynamic(state, rough);
     CHECK(held.dynamic.energy.friction > 0.0);
     CHECK(free.dynamic.energy.friction == 0.0);
     CHECK(held.energy_error < 0.01);
@@ -125,7 +123,7 @@ TEST_CASE("dynamic bending: the same bytes for any number of threads") {
     for (const int count : {1, 2}) {
         omp_set_num_threads(count);
         documents.push_back(
-            document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options, no_stop), options, Json::array()).dump());
+            document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options), options, Json::array()).dump());
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);
@@ -136,7 +134,7 @@ TEST_CASE("gaps that close are the same contacts in both methods") {
     const State state = test::make_cracked_bar(12, 1e-6, removed);
     Options options;
     options.cycles = 1;
-    const Result still = bend_static(state, options, no_stop), moving = bend_dynamic(state, dynamic_options(), no_stop);
+    const Result still = bend_static(state, options), moving = bend_dynamic(state, dynamic_options());
     CHECK(still.closed_gaps > 0);
     CHECK(moving.closed_gaps == still.closed_gaps);
     CHECK(unloading_slope(moving) == relative(unloading_slope(still), 0.01));
@@ -145,5 +143,5 @@ TEST_CASE("gaps that close are the same contacts in both methods") {
 TEST_CASE("dynamic bending needs a density") {
     State state = test::make_lattice({.cells = {14, 3, 3}});
     state.materials.front().density.reset();
-    CHECK_THROWS_WITH_AS(bend_dynamic(state, dynamic_options(), no_stop), "material 'alumina' has no density", Error);
+    CHECK_THROWS_WITH_AS(bend_dynamic(state, dynamic_options()), "material 'alumina' has no density", Error);
 }

@@ -23,8 +23,6 @@ using test::relative;
 
 namespace {
 
-const Watch no_stop = [](double) { return true; };
-
 constexpr double friction = 0.4, radius = 5e-8, modulus = 4e11, shear_modulus = 9e10, overlap = 1e-10;  // m, Pa
 const double pressed = physics::hertz_contact(modulus, radius, overlap).force;
 const double stiffness = physics::mindlin_stiffness(shear_modulus, radius, overlap);
@@ -90,7 +88,7 @@ Options once(double coefficient) {
     return options;
 }
 
-Result bent(const State& state, const Options& options) { return bend_static(state, options, no_stop); }
+Result bent(const State& state, const Options& options) { return bend_static(state, options); }
 
 /// A slender bar with a column of particles right above each support and below the punch, so that contacts are level.
 State level_bar() { return test::make_lattice({.cells = {61, 3, 3}}); }
@@ -238,7 +236,7 @@ TEST_CASE("friction: static and dynamic bending agree in loading, unloading and 
         Options motion = options;
         motion.method = Method::motion;
         motion.max_deflection = still.curve[12].deflection;
-        const Result moving = bend_dynamic(state, motion, no_stop);
+        const Result moving = bend_dynamic(state, motion);
         const auto peak = std::ranges::max_element(moving.curve, {}, &Point::force);
         CHECK(peak->force / peak->deflection == relative(peak_stiffness(still, options), 2e-3));
         for (const double share : {0.9, 0.6, 0.3}) CHECK(unloaded_to(moving, share) == relative(unloaded_to(still, share), 0.02));

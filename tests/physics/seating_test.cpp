@@ -11,21 +11,15 @@
 #include "tests/physics/bar_files.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
-#include "tools/bend/report.h"
+#include "bending/result_document.h"
 
 using namespace kiln;
 using namespace kiln::bending;
 using test::relative;
 
-namespace {
-
-const Watch no_stop = [](double) { return true; };
-
-}  // namespace
-
 TEST_CASE("a bar that rolls under the cylinders comes to rest whole: distances stay, and they turn it no further") {
     const State state = test::bar_of_file("dynamic_slope.kiln");
-    const Result result = bend_static(state, {}, no_stop);
+    const Result result = bend_static(state, {});
     const mechanics::BondNetwork& network = result.specimen.body.network;
     CHECK(result.specimen.turn.norm() > 0.3);
     CHECK(std::any_of(result.warnings.begin(), result.warnings.end(),
@@ -40,7 +34,7 @@ TEST_CASE("a bar that rolls under the cylinders comes to rest whole: distances s
     const mechanics::Seat seat = mechanics::seat_rigid(network, find_contacts(result.specimen, result.fixture).contacts, 1e-16);
     CHECK(seat.displacement.front().tail<3>().norm() / network.rotation_length < 1e-5);
     // The bent state is the one that came in, displaced.
-    const State bent = bend::bent_state(result, Json::array());
+    const State bent = bent_state(result);
     const auto displacement = std::find_if(bent.particles.other.begin(), bent.particles.other.end(),
                                            [](const NamedArray& each) { return each.name == "displacement"; });
     const auto& rows = std::get<std::vector<double>>(displacement->array.data);
@@ -55,14 +49,14 @@ TEST_CASE("thin bars, which roll by tenths of a radian before they rest: both me
         const State state = test::bar_of_file(name);
         Options still;
         still.cycles = 1;
-        const Result expected = bend_static(state, still, no_stop);
+        const Result expected = bend_static(state, still);
         CHECK(expected.specimen.turn.norm() > 0.05);
         const Point& full = expected.curve[6];
         Options slow = still;
         slow.method = Method::motion;
-        const Result usual = bend_dynamic(state, slow, no_stop);
+        const Result usual = bend_dynamic(state, slow);
         slow.punch_velocity = usual.dynamic.velocity / 4.0;
-        const Result moving = bend_dynamic(state, slow, no_stop);
+        const Result moving = bend_dynamic(state, slow);
         const Point& peak = *std::ranges::max_element(moving.curve, {}, &Point::force);
         CHECK(peak.force / peak.deflection == relative(full.force / full.deflection, 0.01));
         CHECK(peak.punch == relative(full.punch, 0.02));

@@ -72,7 +72,7 @@ inline State random_packing(std::int64_t count, double density, double scale, st
     wanted.particles = count;
     wanted.density = density;
     wanted.seed = seed;
-    State state = packing::pack(wanted, [](const packing::Relaxation&) { return true; });
+    State state = packing::pack(wanted);
     state.materials = {physics::builtin_material("alumina")};
     state.box.lengths *= scale;
     for (Vec3& position : state.particles.position) position *= scale;

@@ -31,7 +31,7 @@ Options brittle() {
 }
 
 Result failed(State state, const Options& options = brittle()) {
-    return bend_to_failure(std::move(state), options, [](double) { return true; });
+    return bend_to_failure(std::move(state), options);
 }
 
 double strength_of(const Result& result) {

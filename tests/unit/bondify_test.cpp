@@ -21,8 +21,6 @@ double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * ra
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-bool never_stop(double) { return true; }
-
 /// A state of spheres in a box of the given edge.
 State make_state(const std::vector<Vec3>& position, const std::vector<double>& radius, double edge, bool periodic) {
     State state;
@@ -120,7 +118,7 @@ TEST_CASE("bondify: after the first separation the other pair goes on alone, by 
 
 TEST_CASE("bondify: a particle that overlaps its own periodic images ends with half the box edge") {
     State state = make_state({Vec3(0.3, 0.3, 0.3)}, {0.55}, 1.0, true);
-    const Summary summary = bonding::bondify(state, Options(), never_stop);
+    const Summary summary = bonding::bondify(state, Options());
     CHECK(summary.pairs == 3);
     CHECK(state.particles.radius[0] == relative(0.5, 1e-14));
     for (const double volume : state.bonds->volume) CHECK(volume == relative((sphere(0.55) - sphere(0.5)) / 3.0, 1e-12));
@@ -135,7 +133,7 @@ TEST_CASE("bondify: volume is conserved and nothing overlaps in a packing, for e
         const double before = particle_volume(state.particles);
         Options options;
         options.sharing = sharing;
-        const Summary summary = bonding::bondify(state, options, never_stop);
+        const Summary summary = bonding::bondify(state, options);
         CHECK(summary.pairs > 1000);
         CHECK(particle_volume(state.particles) + sum(state.bonds->volume) == relative(before, 1e-12));
         CHECK(std::abs(summary.volume_error) < 1e-13);
@@ -156,7 +154,7 @@ TEST_CASE("bondify: volume is conserved and nothing overlaps in a packing, for e
 TEST_CASE("bondify: the event queue agrees with a search through all pairs for each separation") {
     State state = make_packing(4, 11);
     const std::vector<double> radius = shrink_all(state);
-    bonding::bondify(state, Options(), never_stop);
+    bonding::bondify(state, Options());
     for (std::size_t row = 0; row < radius.size(); ++row) CHECK(state.particles.radius[row] == relative(radius[row], 1e-12));
 }
 
@@ -168,8 +166,8 @@ TEST_CASE("bondify: the order of the particles and mirroring do not matter") {
     std::shuffle(order.begin(), order.end(), std::mt19937_64(5));
     mirrored.particles = take_rows(state.particles, order);
     for (Vec3& position : mirrored.particles.position) position[0] = -position[0];
-    const Summary one = bonding::bondify(state, Options(), never_stop);
-    const Summary two = bonding::bondify(mirrored, Options(), never_stop);
+    const Summary one = bonding::bondify(state, Options());
+    const Summary two = bonding::bondify(mirrored, Options());
     for (std::size_t row = 0; row < count; ++row)
         CHECK(mirrored.particles.radius[row] ==
               relative(state.particles.radius[static_cast<std::size_t>(order[row])], 1e-12));
@@ -183,7 +181,7 @@ TEST_CASE("bondify: a regular packing, where all events fall together, keeps its
         for (int y = 0; y < 3; ++y)
             for (int z = 0; z < 3; ++z) position.emplace_back(x, y, z);
     State state = make_state(position, std::vector<double>(27, 0.53), 3.0, true);
-    const Summary summary = bonding::bondify(state, Options(), never_stop);
+    const Summary summary = bonding::bondify(state, Options());
     CHECK(summary.bonds == 81);
     for (const double radius : state.particles.radius) CHECK(radius == relative(0.5, 1e-14));
     for (const double volume : state.bonds->volume) CHECK(volume == relative((sphere(0.53) - sphere(0.5)) / 3.0, 1e-12));
@@ -194,8 +192,8 @@ TEST_CASE("bondify: a metre and a nanometre give the same shape") {
     nanometres.box.lengths *= 1e-9;
     for (Vec3& position : nanometres.particles.position) position *= 1e-9;
     for (double& radius : nanometres.particles.radius) radius *= 1e-9;
-    bonding::bondify(metres, Options(), never_stop);
-    bonding::bondify(nanometres, Options(), never_stop);
+    bonding::bondify(metres, Options());
+    bonding::bondify(nanometres, Options());
     REQUIRE(metres.bonds->size() == nanometres.bonds->size());
     for (std::size_t bond = 0; bond < metres.bonds->size(); ++bond) {
         CHECK(nanometres.bonds->radius[bond] * 1e9 == relative(metres.bonds->radius[bond], 1e-9));
@@ -209,13 +207,13 @@ TEST_CASE("bondify: sweeps come closer to the exact limit in proportion to the d
         State exact = start;
         Options options;
         options.sharing = sharing;
-        bonding::bondify(exact, options, never_stop);
+        bonding::bondify(exact, options);
         options.method = Method::sweep;
         std::vector<double> errors;
         for (const double decrement : {4e-4, 2e-4, 1e-4, 5e-5}) {
             State swept = start;
             options.decrement = decrement;
-            const Summary summary = bonding::bondify(swept, options, never_stop);
+            const Summary summary = bonding::bondify(swept, options);
             CHECK(std::abs(summary.volume_error) < 1e-12);
             double error = 0.0;
             for (std::size_t bond = 0; bond < exact.bonds->size(); ++bond)
@@ -235,7 +233,7 @@ TEST_CASE("bondify: sweeps stop when they are asked to, and leave the state alon
     Options options;
     options.method = Method::sweep;
     options.decrement = 1e-3;
-    CHECK_FALSE(bonding::bondify(state, options, [](double) { return false; }).finished);
+    CHECK_THROWS_AS(bonding::bondify(state, options, {.stop = [] { return true; }, .progress = {}}), Interrupted);
     CHECK(state.particles.radius == radius);
     CHECK_FALSE(state.bonds);
 }
@@ -247,7 +245,7 @@ TEST_CASE("bondify: a small particle deep inside a large one stops, the large on
         Options options;
         options.method = method;
         options.decrement = 1e-6;
-        const Summary summary = bonding::bondify(state, options, never_stop);
+        const Summary summary = bonding::bondify(state, options);
         CHECK(summary.stopped == 1);
         CHECK(state.particles.radius[1] == relative(smallest_share * 0.1, 1e-12));
         CHECK(state.particles.radius[0] == relative(0.599, 1e-5));
@@ -260,7 +258,7 @@ TEST_CASE("bondify: a small particle deep inside a large one stops, the large on
 TEST_CASE("bondify: coincident centres are refused with both ids") {
     State state = make_state({Vec3(2, 2, 2), Vec3(2, 2, 2)}, {1.0, 0.5}, 9.0, false);
     state.particles.id = {17, 902};
-    CHECK_THROWS_WITH_AS(bonding::bondify(state, Options(), never_stop), doctest::Contains("particles 17 and 902"), Error);
+    CHECK_THROWS_WITH_AS(bonding::bondify(state, Options()), doctest::Contains("particles 17 and 902"), Error);
 }
 
 TEST_CASE("bondify: thin bonds are counted, and left out with their volume if so wished") {
@@ -268,12 +266,12 @@ TEST_CASE("bondify: thin bonds are counted, and left out with their volume if so
     const State start = make_state({Vec3(1, 5, 5), Vec3(2.6, 5, 5), Vec3(4.5999999, 5, 5)}, {1.0, 1.0, 1.0}, 10.0, false);
     State kept = start, dropped = start;
     Options options;
-    const Summary keep = bonding::bondify(kept, options, never_stop);
+    const Summary keep = bonding::bondify(kept, options);
     CHECK(keep.bonds == 2);
     CHECK(keep.thin == 1);
     CHECK(keep.dropped_volume == 0.0);
     options.drop_thin = true;
-    const Summary drop = bonding::bondify(dropped, options, never_stop);
+    const Summary drop = bonding::bondify(dropped, options);
     CHECK(drop.bonds == 1);
     CHECK(drop.thin == 1);
     CHECK(drop.dropped_volume == relative(kept.bonds->volume[1], 1e-12));

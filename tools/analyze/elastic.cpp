@@ -44,7 +44,8 @@ Json elastic_of(const State& state, const mechanics::BondModel& model, double to
         throw Error(
             "the box is not periodic along all axes, so the state has no elastic tensor; bend tests bodies with free faces");
     const mechanics::BondedBody body = mechanics::bonded_body(state, model);
-    const mechanics::ElasticTensor tensor = mechanics::elastic_tensor(body.network, state.box.volume(), tolerance);
+    const mechanics::ElasticTensor tensor =
+        mechanics::elastic_tensor(body.network, state.box.volume(), tolerance, cli::stop_requested);
     const mechanics::IsotropicAverage average = mechanics::isotropic_average(tensor.stiffness);
     const mechanics::IsotropicAverage affine = mechanics::isotropic_average(tensor.affine);
     converged = converged && tensor.converged;

@@ -40,15 +40,11 @@ int run(int argc, char** argv) {
     while (auto state = input.next_state()) {
         const std::string name = "state " + std::to_string(++number);
         Json history = io::history_of(*state);
-        const bending::Watch watch = [&](double done) {
-            progress.show(done, name);
-            return !cli::stop_requested();
-        };
+        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, name); }};
         const auto test = options.to_failure()                     ? bending::bend_to_failure
                           : options.method == bending::Method::motion ? bending::bend_dynamic
                                                                    : bending::bend_static;
         const bending::Result result = test(std::move(*state), options, watch);
-        if (cli::stop_requested()) return cli::interrupted;
         progress.clear();
         if (!common.quiet) warn(name, result);
         converged = converged && result.converged;

@@ -64,12 +64,8 @@ int run(int argc, char** argv) {
         ++number;
         if (state->bonds && !common.quiet)
             cli::warn("bondify", "state " + std::to_string(number) + ": the bonds that it had are replaced");
-        const bonding::Watch watch = [&](double done) {
-            progress.show(done, "state " + std::to_string(number));
-            return !cli::stop_requested();
-        };
+        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, "state " + std::to_string(number)); }};
         const bonding::Summary summary = bonding::bondify(*state, options, watch);
-        if (!summary.finished) return cli::interrupted;
         progress.clear();
         if (!common.quiet) report(summary, options, number);
         const Json json = summary_json(summary, options);

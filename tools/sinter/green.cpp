@@ -76,10 +76,8 @@ int green(int argc, char** argv) {
     io::Output output(options.common.output, options.common.text);
 
     cli::Progress progress("sinter green", options.common);
-    State state = packing::pack(options.packing, [&](const Relaxation& relaxation) {
-        show(progress, relaxation);
-        return !cli::stop_requested();
-    });
+    State state =
+        packing::pack(options.packing, cli::stop_requested, [&](const Relaxation& relaxation) { show(progress, relaxation); });
     progress.clear();
     state.materials = {material};
     io::append_history(state, cli::history_entry("sinter green", app, summary_of(options.packing, state)));
