@@ -26,6 +26,9 @@ BELOW = {
     "tools/bondify": LIBRARY + ["tools/common"],
     "tools/bend": LIBRARY + ["tools/common"],
     "tools/analyze": LIBRARY + ["tools/common"],
+    "tests/unit": LIBRARY + ["tests/physics"],
+    "tests/physics": LIBRARY,
+    "bench": LIBRARY,
 }
 TEXT = (".cpp", ".h", ".py", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")
 MACHINE_PATH = re.compile(r"(?<![\w.$])/(home|root|work|mnt|srv)/")
@@ -35,7 +38,8 @@ INCLUDE = re.compile(r'#include "([^"]+)"')
 
 def part_of(path):
     """lib/io of lib/io/files.h; nothing for a file elsewhere."""
-    part = "/".join(path.split("/")[:2])
+    first, second = (path.split("/") + [""])[:2]
+    part = first if first in BELOW else f"{first}/{second}"
     return part if part in BELOW else None
 
 

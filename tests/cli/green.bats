@@ -55,6 +55,8 @@ value() { jq -s "last | $2" "$1"; }
     printf '100nm\n0.12um\n' >diameters
     "$SINTER" green -n 10 --distribution file:diameters --text -o listed
     [ "$(value listed '.particles.radius.data | map(select(. > 55e-9)) | length')" = 5 ]
+    "$SINTER" green --distribution file:diameters --text -o as_many
+    [ "$(value as_many '.particles.radius.data | length')" = 2 ]
 }
 
 @test "green: a material from a file, and options from a config file" {
@@ -66,6 +68,19 @@ value() { jq -s "last | $2" "$1"; }
     near "$(value body .history[0].summary.relative_density)" 0.3 1e-12
     echo 'partikles = 7' >options.toml
     run -2 "$SINTER" green --config options.toml
+}
+
+@test "quantities, single and in lists: the units of an option are in its help, and its errors name it" {
+    run -0 "$SINTER" green --help
+    assert_output --partial "[m, cm, mm, um, nm]"
+    run -2 "$SINTER" green --diameter 5
+    assert_output --partial "--diameter: '5' has no unit"
+    run -2 "$SINTER" green --aspect 4:1cm:1
+    assert_output --partial "--aspect: '1cm' has a unit"
+    run -2 "$SINTER" --temperature 1200C --at-time 1h,2
+    assert_output --partial "--at-time: '2' has no unit"
+    run -2 "$SINTER" --schedule "25C 1200C"
+    assert_output --partial "--schedule: '1200C' stands where"
 }
 
 @test "green: wrong usage is one sentence and status 2" {

@@ -1,5 +1,4 @@
 // green_test.cpp: green bodies: size distributions, overlaps, densities, and the coordination number of the paper's start.
-#include <CLI/CLI.hpp>
 #include <doctest/doctest.h>
 #include <omp.h>
 
@@ -12,7 +11,7 @@
 
 #include "core/contacts.h"
 #include "io/files.h"
-#include "tools/sinter/green_options.h"
+#include "packing/packing.h"
 
 using namespace kiln;
 using namespace kiln::packing;
@@ -65,17 +64,6 @@ std::vector<double> diameters(const std::string& text, std::size_t particles, st
     return drawn;
 }
 
-/// Parses and completes the options as the command does.
-sinter::GreenOptions parsed(std::vector<std::string> words) {
-    CLI::App app;
-    sinter::GreenOptions options;
-    options.add_to(app);
-    std::reverse(words.begin(), words.end());
-    app.parse(words);
-    options.complete(app);
-    return options;
-}
-
 }  // namespace
 
 TEST_CASE("green: the random stream is the one that the C++ standard fixes") {
@@ -123,8 +111,7 @@ TEST_CASE("green: a list of diameters is taken in turn, and sets the number of p
     CHECK(close(drawn[0], 100e-9, 1e-14));
     CHECK(close(drawn[1], 200e-9, 1e-14));
     CHECK(close(drawn[2], 100e-9, 1e-14));
-    CHECK(parsed({"--distribution", text}).packing.particles == 2);
-    CHECK(parsed({"--distribution", text, "-n", "7"}).packing.particles == 7);
+    CHECK(std::get<DiameterList>(parse_distribution(text, 0.0)).diameters.size() == 2);
     std::filesystem::remove(file);
     CHECK_THROWS_WITH_AS(diameters(text, 3), doctest::Contains("cannot be read"), Error);
 }

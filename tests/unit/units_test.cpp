@@ -1,15 +1,14 @@
 // units_test.cpp: every unit of the command line by its SI value, and what is no quantity.
-#include <CLI/CLI.hpp>
 #include <doctest/doctest.h>
 
 #include <numbers>
 
-#include "tools/common/quantity_options.h"
+#include "core/types.h"
+#include "io/quantity.h"
 
 namespace {
 
 using namespace kiln;
-using namespace kiln::cli;
 using namespace kiln::io;
 
 struct Case {
@@ -131,30 +130,6 @@ TEST_CASE("what is no finite number is refused") {
 TEST_CASE("no temperature is at absolute zero or below") {
     for (const char* text : {"0K", "-1K", "-273.15C", "-300C"})
         CHECK(refusal(text, Dimension::temperature) == "'" + std::string(text) + "' is not above absolute zero");
-}
-
-TEST_CASE("options take quantities, single and in lists, and their errors name the option") {
-    CLI::App app;
-    double diameter = 0.0;
-    std::vector<double> times;
-    add_quantity(app, "--diameter", diameter, Dimension::length, "size", "100nm");
-    add_quantities(app, "--at-time", times, Dimension::time, "when");
-    app.parse(std::vector<std::string>{"1h,30min,5s", "--at-time", "50nm", "--diameter"});  // CLI11 takes them last first
-    CHECK(diameter == 5e-8);
-    CHECK(times == std::vector<double>{3600.0, 1800.0, 5.0});
-    const std::string help = app.help();
-    CHECK(help.find("[m, cm, mm, um, nm]") != std::string::npos);
-    CHECK(help.find("100nm") != std::string::npos);
-    const auto failure = [&](std::vector<std::string> arguments) -> std::string {
-        try {
-            app.parse(std::move(arguments));
-        } catch (const CLI::ParseError& error) {
-            return error.what();
-        }
-        return "";
-    };
-    CHECK(failure({"5", "--diameter"}).find("--diameter: '5' has no unit") == 0);
-    CHECK(failure({"1h,2", "--at-time"}).find("--at-time: '2' has no unit") == 0);
 }
 
 }  // namespace
