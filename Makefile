@@ -28,7 +28,7 @@ LDFLAGS  := -fopenmp $(EXTRA)
 TOOLS        := sinter bondify bend analyze
 LIB_SOURCES  := $(wildcard lib/*/*.cpp)
 LIB_OBJECTS  := $(LIB_SOURCES:%.cpp=$(BUILD)/%.o)
-TOOL_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(filter-out %/main.cpp,$(wildcard tools/*/*.cpp)))
+TOOL_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tools/*/*.cpp))
 UNIT_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tests/unit/*.cpp tests/physics/*.cpp))
 BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
 BENCH_SCRIPTS := $(basename $(notdir $(wildcard bench/*.py)))
@@ -48,9 +48,34 @@ include packages.mk
 packages: $(BUILD)/packages-present
 
 # ---- build --------------------------------------------------------------------------------------------------------------------
-$(BUILD)/%.o: %.cpp | $(BUILD)/packages-present
+# What compiles and how: everything is compiled anew when it changes. A compiler's cache in front of it changes nothing.
+FLAGS := $(filter-out ccache,$(CXX)) $(CXXFLAGS)
+.PHONY: FORCE
+FORCE:
+
+$(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS) -MMD -MP -c $< -o $@
+	@cmp -s $@ <(echo '$(FLAGS)') || echo '$(FLAGS)' > $@
+
+$(BUILD)/%.o: %.cpp $(BUILD)/flags | $(BUILD)/packages-present
+	@mkdir -p $(@D)
+	$(CXX) $(CXXFLAGS) $(PRECOMPILED) -MMD -MP -c $< -o $@
+
+# What nearly all files of a part include is compiled once. Only for g++ itself: clang has another way, and ccache needs none.
+define precompiled_rule
+$(BUILD)/$(1)/precompiled.h.gch: $(1)/precompiled.h lib/precompiled.h $(BUILD)/flags | $(BUILD)/packages-present
+	@mkdir -p $$(@D)
+	@cp $$< $$(@:.gch=)
+	$(CXX) $$(CXXFLAGS) -x c++-header $$< -o $$@
+
+$(2): $(BUILD)/$(1)/precompiled.h.gch
+$(2): private PRECOMPILED := -include $(BUILD)/$(1)/precompiled.h
+endef
+ifeq ($(CXX),g++)
+$(eval $(call precompiled_rule,lib,$(LIB_OBJECTS)))
+$(eval $(call precompiled_rule,tools,$(TOOL_OBJECTS)))
+$(eval $(call precompiled_rule,tests,$(UNIT_OBJECTS)))
+endif
 
 $(BUILD)/libkiln.a: $(LIB_OBJECTS)
 	@rm -f $@
@@ -63,7 +88,7 @@ $(BUILD)/bin/$(1): $$(patsubst %.cpp,$(BUILD)/%.o,$$(wildcard tools/$(1)/*.cpp t
 endef
 $(foreach tool,$(TOOLS),$(eval $(call tool_rule,$(tool))))
 
-$(BUILD)/test/unit: $(UNIT_OBJECTS) $(TOOL_OBJECTS) $(BUILD)/libkiln.a
+$(BUILD)/test/unit: $(UNIT_OBJECTS) $(BUILD)/libkiln.a
 	@mkdir -p $(@D)
 	$(CXX) $^ $(LDFLAGS) -o $@
 
@@ -74,8 +99,9 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 include demo.mk checks.mk tests/fuzz/fuzz.mk packaging/package.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-# Test cases run once: quick to compile counts for more than quick to run.
-$(BUILD)/tests/%.o: OPTIMISE := -O1
+# Test cases run once, and programs only read, ask the library and write: quick to compile counts for more than quick to run.
+$(BUILD)/tests/%: OPTIMISE := -O1
+$(BUILD)/tools/%: OPTIMISE := -O1 -DNDEBUG
 
 # ---- tests --------------------------------------------------------------------------------------------------------------------
 test: $(BUILD)/neighbours-present all $(BUILD)/test/unit  ## build and run all tests; ends with "N passed, M failed"
