@@ -6,9 +6,15 @@
 #include <vector>
 
 #include "core/array.h"
+#include "core/types.h"
 #include "io/json.h"
 
 namespace kiln::io {
+
+/// An Error whose sentence begins with the file or the document that it is about.
+struct PlacedError : Error {
+    using Error::Error;
+};
 
 /// One document: its JSON header without the arrays, and the arrays under "particles" and "bonds" in the order they stood.
 struct Document {

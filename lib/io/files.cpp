@@ -32,7 +32,7 @@ std::filesystem::path resolved(std::filesystem::path path) {
 void throw_system_error(const std::string& sentence) {
     if (errno == EPIPE) throw ClosedPipe();
     if (errno == EINTR) throw Interrupted();
-    throw Error(sentence + ": " + std::strerror(errno));
+    throw PlacedError(sentence + ": " + std::strerror(errno));
 }
 
 void finish_partial(const std::string& name) {

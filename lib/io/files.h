@@ -16,8 +16,8 @@ namespace kiln::io {
 /// The reader of the stream went away; the tool ends silently.
 struct ClosedPipe : std::exception {};
 
-/// Turns errno into ClosedPipe, Interrupted (a signal ended a wait for input or for room in a pipe), or Error
-/// "<sentence>: <cause>".
+/// Turns errno into ClosedPipe, Interrupted (a signal ended a wait for input or for room in a pipe), or
+/// PlacedError "<sentence>: <cause>"; the sentence begins with the name of the file.
 [[noreturn]] void throw_system_error(const std::string& sentence);
 
 /// Lets the program keep the memory that it frees. A page that comes fresh from the system costs more time than reading 4 KB into

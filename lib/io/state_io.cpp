@@ -193,9 +193,7 @@ Json unknown_keys(Json header) {
     return header;
 }
 
-}  // namespace
-
-State state_from(Document document) {
+State checked_state(Document document) {
     const Json& header = document.header;
     const std::string& place = document.place;
     check_kind(header, place);
@@ -213,6 +211,16 @@ State state_from(Document document) {
     if (document.has_bonds) state.bonds = bonds_from(std::move(document.bonds), state.particles.size(), place);
     state.other = text_of(unknown_keys(std::move(document.header)));
     return state;
+}
+
+}  // namespace
+
+State state_from(Document document) {
+    try {
+        return checked_state(std::move(document));
+    } catch (const Error& error) {
+        throw PlacedError(error.what());
+    }
 }
 
 }  // namespace kiln::io

@@ -9,9 +9,9 @@ namespace kiln::io {
 inline constexpr int format_version = 1;
 
 /// Checks the document and moves its arrays into a state.
-/// Throws Error naming document, array and row: not dem-state, unknown version, units other than SI, wrong type or shape, index out
-/// of range, NaN or infinity, radius <= 0, unknown material, box not orthogonal, repeated id or material, a bond of a particle with
-/// itself.
+/// Throws PlacedError naming document, array and row: not dem-state, unknown version, units other than SI, wrong type or shape,
+/// index out of range, NaN or infinity, radius <= 0, unknown material, box not orthogonal, repeated id or material, a bond of a
+/// particle with itself.
 /// Unknown keys of the document, its box and its contacts end in State::other, in the same places.
 State state_from(Document document);
 

@@ -167,7 +167,7 @@ PROGRAM
 
 @test "-q: no warnings, whatever they are about" {
     run -0 --separate-stderr "$BEND" --cycles 1 "$DATA/bend/dynamic_slope.kiln"
-    assert_regex "$stderr" "state 1: the bar rolls by 0.3"
+    assert_regex "$stderr" "document 1: the bar rolls by 0.3"
     jq -e '.roll > 0.3' <<<"$output"
     run -3 --separate-stderr "$BEND" --cycles 1 --tolerance 1e-14 "$BAR"
     assert_regex "$stderr" "unbalanced"

@@ -52,7 +52,7 @@ setup() { cd "$BATS_TEST_TMPDIR"; }
 @test "bondify: bonds that were there are replaced, with a warning that -q silences" {
     "$BONDIFY" "$DATA/two_spheres.jsonl" -o once.kiln
     run -0 --separate-stderr "$BONDIFY" --text once.kiln
-    assert_regex "$stderr" "state 1: the bonds that it had are replaced"
+    assert_regex "$stderr" "document 1: the bonds that it had are replaced"
     assert_equal "$(value '.bonds.radius.shape[0]')" 0
     run -0 --separate-stderr "$BONDIFY" -q --text once.kiln
     assert_equal "$stderr" ""

@@ -93,6 +93,6 @@ END
     assert_output --partial "no two states of the stream have density 0.9 between them"
     jq -c 'if .time == 300 then .particles.id = {type: "i8", shape: [1], data: [5]} else . end' "$DATA/cubic_series.jsonl" >other.jsonl
     run -1 "$ANALYZE" select --interpolate --time 200s other.jsonl
-    assert_output --partial "state 3 and the one before: the states differ: particle 0 is in one and not in the next"
+    assert_output --partial "document 3: between it and the state before: the states differ: particle 0 is in one and not in the next"
     run -2 "$ANALYZE" select --index 1.5 "$DATA/cubic_series.jsonl"
 }

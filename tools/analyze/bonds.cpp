@@ -65,8 +65,8 @@ void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
     result["force_histogram"] = histogram_json(analysis::histogram_of(*force, bins, std::ranges::min(*force)));
 }
 
-Json bonds_of(const State& state, const std::string& place, std::size_t bins) {
-    if (!state.bonds) throw Error(place + ": has no bonds; bondify makes them");
+Json bonds_of(const State& state, std::size_t bins) {
+    if (!state.bonds) throw Error("has no bonds; bondify makes them");
     const analysis::Density density = analysis::measured_density(state);
     const auto mean = [](const std::vector<double>& values) {
         return values.empty() ? Json() : Json(sum(values) / static_cast<double>(values.size()));
@@ -98,8 +98,7 @@ int bonds(int argc, char** argv) {
     app.footer(footer);
     cli::add_number(app, "--bins", bins, {1, 1000000}, "Number of bins of the histogram");
     return report_each(app, argc, argv, columns, [&bins](io::Document document) {
-        const std::string place = document.place;
-        return bonds_of(io::state_from(std::move(document)), place, bins);
+        return bonds_of(io::state_from(std::move(document)), bins);
     });
 }
 

@@ -139,13 +139,7 @@ int density(int argc, char** argv) {
     app.footer(footer);
     options.add_to(app);
     return report_each(app, argc, argv, columns, [&](io::Document document) {
-        const std::string place = document.place;
-        try {
-            return density_of(io::state_from(std::move(document)), options);
-        } catch (const Error& error) {
-            if (std::string(error.what()).starts_with(place)) throw;
-            throw Error(place + ": " + error.what());
-        }
+        return density_of(io::state_from(std::move(document)), options);
     });
 }
 

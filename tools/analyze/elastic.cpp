@@ -8,6 +8,7 @@
 #include "mechanics/elastic_tensor.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/report.h"
+#include "tools/common/each_state.h"
 
 namespace kiln::analyze {
 
@@ -90,7 +91,10 @@ int elastic(int argc, char** argv) {
     io::Input input(common.files, cli::stop_requested);
     Report report(common, table, columns);
     bool converged = true;
-    while (const auto state = input.next_state()) report.add(elastic_of(*state, model, tolerance, converged));
+    cli::for_each_state(input, [&](const State& state, const std::string&) {
+        report.add(elastic_of(state, model, tolerance, converged));
+        return true;
+    });
     report.finish();
     return converged ? cli::done : cli::not_converged;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tools/common/each_state.h"
 #include "tools/common/tool.h"
 #include "io/files.h"
 #include "io/csv.h"
@@ -14,7 +15,7 @@ namespace kiln::analyze {
 void add_point(Points& points, const io::Document& document) {
     expect_format(document, {"dem-modulus", "dem-elastic"}, "fit");
     const double density = positive_at(document, "relative_density");
-    if (density > 1.0) throw Error(document.place + ": relative_density is " + Json(density).dump() + ", more than 1");
+    if (density > 1.0) throw Error("relative_density is " + Json(density).dump() + ", more than 1");
     points.porosity.push_back(1.0 - density);
     points.modulus.push_back(positive_at(document, "young_modulus"));
     const bool has_error = document.header.contains("standard_error") && !document.header["standard_error"].is_null();
@@ -49,7 +50,7 @@ Points read_points(const std::vector<std::string>& files) {
     std::vector<std::string> streams;
     const auto read_streams = [&] {
         io::Input input(std::exchange(streams, {}), cli::stop_requested);
-        while (const auto document = input.next()) add_point(points, *document);
+        cli::for_each_document(input, [&](const io::Document& document) { add_point(points, document); });
     };
     for (const std::string& file : files) {
         if (!io::is_csv(file)) {

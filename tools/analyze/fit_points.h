@@ -13,8 +13,7 @@ struct Points {
     std::vector<double> porosity, modulus, error;  // -, Pa, Pa (NaN where there is none)
 };
 
-/// Adds the point of a dem-modulus or dem-elastic document. Throws Error naming the document and the key that is missing or out of
-/// range.
+/// Adds the point of a dem-modulus or dem-elastic document. Throws Error naming the key that is missing or out of range.
 void add_point(Points& points, const io::Document& document);
 
 /// Adds the points of a CSV: relative_density or porosity (plain numbers), young_modulus, and optionally standard_error, both with

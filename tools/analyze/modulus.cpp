@@ -116,26 +116,26 @@ Curve curve_of(const io::Document& document) {
                 numbers_at(document, "curve", "force")};
     const std::size_t points = curve.force.size();
     if (curve.deflection.size() != points || curve.punch.size() != points)
-        throw Error(document.place + ": curve has " + std::to_string(curve.deflection.size()) + " deflections, " +
+        throw Error("curve has " + std::to_string(curve.deflection.size()) + " deflections, " +
                     std::to_string(curve.punch.size()) + " punch positions and " + std::to_string(points) + " forces");
     return curve;
 }
 
 /// Force against deflection in the window of the last unloading, and how many points that are.
-std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const Options& options, const std::string& place) {
+std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const Options& options) {
     const auto branch = analysis::last_unloading(curve.punch);
-    if (!branch) throw Error(place + ": the curve has no unloading");
+    if (!branch) throw Error("the curve has no unloading");
     std::vector<double> deflection, force;
     for (const std::size_t point : analysis::points_in(curve.force, *branch, options.window)) {
         deflection.push_back(curve.deflection[point] - options.compliance * curve.force[point]);
         force.push_back(curve.force[point]);
     }
     if (force.size() < 2)
-        throw Error(place + ": the last unloading has " + std::to_string(force.size()) +
+        throw Error("the last unloading has " + std::to_string(force.size()) +
                     " points in the window of forces, expected two or more; give a wider --window");
     const analysis::Line line = analysis::fit_line(deflection, force);
     if (!(line.slope > 0.0) || !std::isfinite(line.slope))
-        throw Error(place + ": the force does not grow with the deflection in the last unloading" +
+        throw Error(std::string("the force does not grow with the deflection in the last unloading") +
                     (options.compliance > 0.0 ? ", less --compliance" : ""));
     return {line, force.size()};
 }
@@ -144,7 +144,7 @@ std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const 
 double size_of(const io::Document& document, const std::string& key, const std::optional<double>& given) {
     if (given) return *given;
     if (io::is_csv(document.place) && !document.header.contains(key))
-        throw Error(document.place + ": --" + key + " is needed with a CSV");
+        throw Error("--" + key + " is needed with a CSV");
     return positive_at(document, key);
 }
 
@@ -152,8 +152,7 @@ double size_of(const io::Document& document, const std::string& key, const std::
 double poisson_ratio_of(const io::Document& document, const Options& options) {
     if (options.poisson_ratio) return *options.poisson_ratio;
     if (!document.header.contains("poisson_ratio"))
-        throw Error(document.place +
-                    ": has no poisson_ratio, which the shear correction requires; give --poisson-ratio or --shear none");
+        throw Error("has no poisson_ratio, which the shear correction requires; give --poisson-ratio or --shear none");
     return number_at(document, "poisson_ratio", -1.0);
 }
 
@@ -163,7 +162,7 @@ Json modulus_of(const io::Document& document, const Options& options) {
     const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
     Json density = options.density ? Json(*options.density) : Json();
     if (!options.density && !io::is_csv(document.place)) density = positive_at(document, "relative_density");
-    const auto [line, points] = unloading_line(curve_of(document), options, document.place);
+    const auto [line, points] = unloading_line(curve_of(document), options);
     const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio_of(document, options)) : 1.0;
     const double factor = physics::slender_modulus(1.0, span, width, height) * correction;
     const double modulus = factor * line.slope, error = factor * line.slope_error;

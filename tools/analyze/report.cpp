@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/csv.h"
+#include "tools/common/each_state.h"
 
 namespace kiln::analyze {
 
@@ -84,7 +85,7 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
     Report report(common, table, columns);
     const auto add_all = [&](std::vector<std::string> files) {
         io::Input input(std::move(files), cli::stop_requested);
-        while (auto document = input.next()) report.add(convert(std::move(*document)));
+        cli::for_each_document(input, [&](io::Document document) { report.add(convert(std::move(document))); });
     };
     std::vector<std::string> streams;  // between two tables
     for (const std::string& file : common.files) {
@@ -93,7 +94,8 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
             continue;
         }
         if (!streams.empty()) add_all(std::exchange(streams, {}));
-        report.add(convert(from_table(file)));
+        io::Document test = from_table(file);
+        cli::at_place(file, [&] { report.add(convert(std::move(test))); });
     }
     if (!streams.empty() || common.files.empty()) add_all(streams);
     report.finish();

@@ -39,8 +39,9 @@ class Report {
 };
 
 /// What a subcommand does that makes one result of each document: adds --table and the common options to the app, parses, and
-/// reports convert(document) for every document of the input. convert throws Error for a document that it cannot take. from_table:
-/// makes a document of a file whose name ends in .csv; without it such a file is a stream like every other.
+/// reports convert(document) for every document of the input. convert throws Error for a document that it cannot take; file and
+/// document are put before its sentence. from_table: makes a document of a file whose name ends in .csv; without it such a file is
+/// a stream like every other.
 int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns,
                 const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table = {});

@@ -15,22 +15,22 @@ void expect_format(const io::Document& document, std::initializer_list<const cha
         if (format != name) continue;
         const Json version = document.header.value("version", Json(io::format_version));
         if (version != io::format_version)
-            throw Error(document.place + ": has version " + version.dump() + ", this program knows version " +
+            throw Error("has version " + version.dump() + ", this program knows version " +
                         std::to_string(io::format_version));
         return;
     }
     const std::string found = format.is_string() ? format.get<std::string>() : format.dump();
-    throw Error(document.place + ": is " + found + ", " + tool + " reads " + known);
+    throw Error("is " + found + ", " + tool + " reads " + known);
 }
 
 double number_at(const io::Document& document, const std::string& key, double lowest) {
-    if (!document.header.contains(key)) throw Error(document.place + ": has no " + key);
-    return io::number_from(document.header[key], document.place + ": " + key, lowest);
+    if (!document.header.contains(key)) throw Error("has no " + key);
+    return io::number_from(document.header[key], key, lowest);
 }
 
 double positive_at(const io::Document& document, const std::string& key) {
     const double number = number_at(document, key, 0.0);
-    if (number == 0.0) throw Error(document.place + ": " + key + " is zero, expected a positive number");
+    if (number == 0.0) throw Error(key + " is zero, expected a positive number");
     return number;
 }
 
@@ -38,12 +38,12 @@ std::vector<double> numbers_at(const io::Document& document, const std::string& 
     const std::string where = object + "." + key;
     const Json& header = document.header;
     if (!header.contains(object) || !header[object].is_object() || !header[object].contains(key))
-        throw Error(document.place + ": has no " + where);
+        throw Error("has no " + where);
     const Json& list = header[object][key];
-    if (!list.is_array()) throw Error(document.place + ": " + where + " is not a list of numbers");
+    if (!list.is_array()) throw Error(where + " is not a list of numbers");
     std::vector<double> numbers;
     for (std::size_t row = 0; row < list.size(); ++row)
-        numbers.push_back(io::number_from(list[row], document.place + ": " + where + ", row " + std::to_string(row),
+        numbers.push_back(io::number_from(list[row], where + ", row " + std::to_string(row),
                                           std::numeric_limits<double>::lowest()));
     return numbers;
 }

@@ -9,16 +9,18 @@
 
 namespace kiln::analyze {
 
-/// Throws Error "PLACE: is X, TOOL reads Y" unless the document has one of the wanted formats in a version that is known.
+/// The errors of all of these are for cli::for_each_document to put the document before.
+
+/// Throws Error "is X, TOOL reads Y" unless the document has one of the wanted formats in a version that is known.
 void expect_format(const io::Document& document, std::initializer_list<const char*> wanted, const std::string& tool);
 
-/// The finite number at a key of the header, at least `lowest`; throws Error naming the document and the key.
+/// The finite number at a key of the header, at least `lowest`; throws Error naming the key.
 double number_at(const io::Document& document, const std::string& key, double lowest);
 
 /// The same, greater than zero.
 double positive_at(const io::Document& document, const std::string& key);
 
-/// The list of finite numbers at header[object][key]; throws Error naming the document and the key.
+/// The list of finite numbers at header[object][key]; throws Error naming the key.
 std::vector<double> numbers_at(const io::Document& document, const std::string& object, const std::string& key);
 
 }  // namespace kiln::analyze

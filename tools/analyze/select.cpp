@@ -8,6 +8,7 @@
 #include "tools/analyze/analyze.h"
 #include "analysis/interpolate.h"
 #include "tools/analyze/report.h"
+#include "tools/common/each_state.h"
 #include "analysis/structure.h"
 #include "io/state_io.h"
 
@@ -123,21 +124,18 @@ void note_crossings(std::vector<Choice>& choices, const Options& options, const 
 std::size_t read(io::Input& input, const Options& options, std::vector<Choice>& choices) {
     std::size_t states = 0;
     std::optional<Place> before;
-    while (auto state = input.next_state()) {
+    cli::for_each_state(input, [&](State state, const std::string&) {
         if (!options.interpolate) {
-            consider(choices, options, std::make_shared<const State>(std::move(*state)), ++states);
-            continue;
+            consider(choices, options, std::make_shared<const State>(std::move(state)), ++states);
+            return true;
         }
-        const std::optional<double> value = options.value_of(*state, ++states);
-        if (!value) continue;
-        const Place now{*value, std::make_shared<const State>(std::move(*state))};
-        try {
-            note_crossings(choices, options, before, now);
-        } catch (const Error& error) {
-            throw Error("state " + std::to_string(states) + " and the one before: " + error.what());
-        }
+        const std::optional<double> value = options.value_of(state, ++states);
+        if (!value) return true;
+        const Place now{*value, std::make_shared<const State>(std::move(state))};
+        cli::at_place("between it and the state before", [&] { note_crossings(choices, options, before, now); });
         before = now;
-    }
+        return true;
+    });
     return states;
 }
 

@@ -6,19 +6,20 @@
 #include "bending/failure.h"
 #include "bending/result_document.h"
 #include "bending/static_bending.h"
-#include "tools/common/progress.h"
-#include "tools/common/tool.h"
 #include "io/files.h"
 #include "io/state_io.h"
 #include "tools/bend/options.h"
+#include "tools/common/each_state.h"
+#include "tools/common/progress.h"
+#include "tools/common/tool.h"
 
 namespace {
 
 using namespace kiln;
 
-void warn(const std::string& state, const bending::Result& result) {
-    if (!result.converged) cli::warn("bend", state + ": some forces stayed unbalanced; see \"residual\" in the result");
-    for (const std::string& warning : result.warnings) cli::warn("bend", state + ": " + warning);
+void warn(const std::string& place, const bending::Result& result) {
+    if (!result.converged) cli::warn("bend", place + ": some forces stayed unbalanced; see \"residual\" in the result");
+    for (const std::string& warning : result.warnings) cli::warn("bend", place + ": " + warning);
 }
 
 int run(int argc, char** argv) {
@@ -36,26 +37,25 @@ int run(int argc, char** argv) {
     if (!options.states.empty()) states.emplace(options.states, common.text);
     cli::Progress progress("bend", common);
     bool converged = true;
-    std::size_t number = 0;
-    while (auto state = input.next_state()) {
-        const std::string name = "state " + std::to_string(++number);
-        Json history = io::history_of(*state);
-        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, name); }};
-        const auto test = options.to_failure()                     ? bending::bend_to_failure
-                          : options.method == bending::Method::motion ? bending::bend_dynamic
-                                                                   : bending::bend_static;
-        const bending::Result result = test(std::move(*state), options, watch);
+    const auto test = options.to_failure()                        ? bending::bend_to_failure
+                      : options.method == bending::Method::motion ? bending::bend_dynamic
+                                                                  : bending::bend_static;
+    cli::for_each_state(input, [&](State state, const std::string& place) {
+        Json history = io::history_of(state);
+        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, place); }};
+        const bending::Result result = test(std::move(state), options, watch);
         progress.clear();
-        if (!common.quiet) warn(name, result);
+        if (!common.quiet) warn(place, result);
         converged = converged && result.converged;
         const Json entry = cli::history_entry("bend", app, bending::summary(result));
         history.push_back(entry);
         output.write(bending::document(result, options, history));
-        if (!states) continue;
+        if (!states) return true;
         State bent = bending::bent_state(result);
         io::append_history(bent, entry);
         states->write(std::move(bent));
-    }
+        return true;
+    });
     output.commit();
     if (states) states->commit();
     return converged ? cli::done : cli::not_converged;

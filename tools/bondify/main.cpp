@@ -6,6 +6,7 @@
 #include "tools/common/tool.h"
 #include "io/files.h"
 #include "io/state_io.h"
+#include "tools/common/each_state.h"
 #include "tools/bondify/options.h"
 
 namespace {
@@ -13,10 +14,10 @@ namespace {
 using namespace kiln;
 
 /// One sentence for each thing about a state that the user should know.
-void report(const bonding::Summary& summary, const bonding::Options& options, std::size_t number) {
-    const auto warn = [number](const auto&... words) {
+void report(const bonding::Summary& summary, const bonding::Options& options, const std::string& place) {
+    const auto warn = [&place](const auto&... words) {
         std::ostringstream sentence;
-        sentence << "state " << number << ": ";
+        sentence << place << ": ";
         (sentence << ... << words);
         cli::warn("bondify", sentence.str());
     };
@@ -59,20 +60,18 @@ int run(int argc, char** argv) {
     io::Input input(common.files, cli::stop_requested);
     io::Output output(common.output, common.text);
     cli::Progress progress("bondify", common);
-    std::size_t number = 0;
-    while (auto state = input.next_state()) {
-        ++number;
-        if (state->bonds && !common.quiet)
-            cli::warn("bondify", "state " + std::to_string(number) + ": the bonds that it had are replaced");
-        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, "state " + std::to_string(number)); }};
-        const bonding::Summary summary = bonding::bondify(*state, options, watch);
+    cli::for_each_state(input, [&](State state, const std::string& place) {
+        if (state.bonds && !common.quiet) cli::warn("bondify", place + ": the bonds that it had are replaced");
+        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, place); }};
+        const bonding::Summary summary = bonding::bondify(state, options, watch);
         progress.clear();
-        if (!common.quiet) report(summary, options, number);
+        if (!common.quiet) report(summary, options, place);
         const Json json = summary_json(summary, options);
         progress.detail(json);
-        io::append_history(*state, cli::history_entry("bondify", app, json));
-        output.write(std::move(*state));
-    }
+        io::append_history(state, cli::history_entry("bondify", app, json));
+        output.write(std::move(state));
+        return true;
+    });
     output.commit();
     return cli::done;
 }

@@ -13,7 +13,7 @@ namespace kiln::sinter {
 
 namespace {
 
-using cli::add_number, cli::add_quantities, cli::add_quantity, io::Dimension;
+using cli::add_choice, cli::add_number, cli::add_quantities, cli::add_quantity, io::Dimension;
 
 constexpr const char* description =
     "Sinters packings of powder particles by the discrete element method.\n\n"
@@ -68,17 +68,15 @@ void Options::add_programme(CLI::App& app) {
            "Temperatures, heating rates and hold times, such as \"25C 10K/min 1200C 1h 10K/min 25C\", from the state's time on")
         ->type_name("WORDS")
         ->excludes(hold);
-    app.add_option("--report", report,
-                   "viscosity: write with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
-        ->check(CLI::IsMember({"viscosity"}))
-        ->type_name("WHAT");
+    add_choice(app, "--report", report, {{"viscosity", Report::viscosity}},
+               "viscosity: write with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
+        ->default_str("none");
 }
 
 void Options::add_boundaries(CLI::App& app) {
-    app.add_option("--boundary", boundary, "periodic: along all axes; free: a body without periodic faces")
-        ->check(CLI::IsMember({"periodic", "free"}))
-        ->default_str("as the state says")
-        ->type_name("KIND");
+    add_choice(app, "--boundary", faces, {{"periodic", sintering::Faces::periodic}, {"free", sintering::Faces::free}},
+               "periodic: along all axes; free: a body without periodic faces")
+        ->default_str("as the state says");
     app.add_option("--fix", fixed, "Axes along which the box keeps its length, such as xy for a film on a substrate")
         ->type_name("AXES");
     add_quantities(app, "--pressure", pressure, Dimension::pressure,
@@ -86,11 +84,8 @@ void Options::add_boundaries(CLI::App& app) {
 }
 
 void Options::add_method(CLI::App& app) {
-    app.add_option("--method", method,
-                   "implicit: without inertia, second order in time; explicit: with inertia, scaled, as in the paper")
-        ->check(CLI::IsMember({"implicit", "explicit"}))
-        ->capture_default_str()
-        ->type_name("METHOD");
+    add_choice(app, "--method", method, {{"implicit", Method::implicit}, {"explicit", Method::explicit_steps}},
+               "implicit: without inertia, second order in time; explicit: with inertia, scaled, as in the paper");
     add_number(app, "--mass-scaling", mass_scaling, {cli::above_zero}, "Mass over the true one; explicit");
     add_number(app, "--tolerance", tolerance, {}, "Relative error of the density over the run to aim at");
     add_number(app, "--order", order, {1, 2}, "Order in time of the implicit step; 1 is for comparison");
@@ -114,7 +109,7 @@ void Options::check(const std::string& output) const {
         throw CLI::ValidationError("--fix: '" + fixed + "' is not made of the axes x, y and z");
     if (!(pressure.empty() || pressure.size() == 1 || pressure.size() == 3))
         throw CLI::ValidationError("--pressure: one value or three are required, for x,y,z");
-    if (boundary == "free" && (!fixed.empty() || !pressure.empty()))
+    if (faces == sintering::Faces::free && (!fixed.empty() || !pressure.empty()))
         throw CLI::ValidationError(
             "--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
     if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint requires an output file: -o FILE");
@@ -126,9 +121,7 @@ sintering::SinteringSettings Options::settings(double start) const {
     sintering::SinteringSettings settings;
     settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : io::parse_schedule(schedule).from(start);
     settings.constants = constants;
-    settings.faces = boundary == "free"       ? sintering::Faces::free
-                     : boundary == "periodic" ? sintering::Faces::periodic
-                                              : sintering::Faces::as_given;
+    settings.faces = faces;
     for (const char axis : fixed) settings.fixed[static_cast<std::size_t>(axis - 'x')] = true;
     for (std::size_t axis = 0; axis < 3 && !pressure.empty(); ++axis)
         settings.pressure[static_cast<Eigen::Index>(axis)] = pressure[pressure.size() == 1 ? 0 : axis];

@@ -12,21 +12,25 @@ class App;
 
 namespace kiln::sinter {
 
+enum class Method { implicit, explicit_steps };
+
+enum class Report { none, viscosity };
+
 struct Options {
     std::vector<double> densities;  // relative, wanted states
     std::vector<double> times;      // s, wanted states
     double every = 0.0;             // s, between states; 0: none
     double temperature = 0.0;       // K, of a hold; 0: a schedule is given
     std::string schedule;
-    std::string boundary = "as the state says";
+    sintering::Faces faces = sintering::Faces::as_given;
     std::string fixed;              // axes
     std::vector<double> pressure;   // Pa, one or three
-    std::string method = "implicit";
+    Method method = Method::implicit;
     double mass_scaling = 1e20;
     double tolerance = 3e-4;
     int order = 2;
     physics::ContactConstants constants;
-    std::string report;             // what else to say of each state
+    Report report = Report::none;   // what else to say of each state
     std::string history;            // file of one JSON line a step
     std::string checkpoint;         // file
     double checkpoint_every = 60.0;  // s of wall time

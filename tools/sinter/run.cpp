@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "tools/common/each_state.h"
 #include "tools/common/tool.h"
 #include "sintering/explicit_sintering.h"
 #include "sintering/implicit_sintering.h"
@@ -26,8 +27,8 @@ constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a bo
 using sintering::triple;
 
 
-Json summary_of(const sintering::StepRecord& record, const std::string& method) {
-    Json summary{{"method", method},
+Json summary_of(const sintering::StepRecord& record, Method method) {
+    Json summary{{"method", method == Method::implicit ? "implicit" : "explicit"},
                  {"time", record.time},
                  {"duration", record.duration},
                  {"temperature", record.temperature},
@@ -37,7 +38,7 @@ Json summary_of(const sintering::StepRecord& record, const std::string& method) 
                  {"coordination_number", record.contacts.coordination_number},
                  {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
                  {"attempts", record.attempts}};
-    if (method == "explicit") return summary;
+    if (method == Method::explicit_steps) return summary;
     summary["density_error"] = record.error;
     summary["newton"] = record.newton;
     summary["conjugate_gradients"] = record.conjugate_gradients;
@@ -74,15 +75,16 @@ std::vector<std::string> add_viscosities(Json& summary, const State& state, cons
 std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options& options) {
     sintering::SinteringSettings settings = options.settings(state.time);
     settings.stop = cli::stop_requested;
-    if (options.method == "explicit") return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
+    if (options.method == Method::explicit_steps) return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
     return std::make_unique<sintering::ImplicitSintering>(std::move(state), settings);
 }
 
 /// One state on its way.
 class Sintered {
    public:
-    Sintered(State state, const Options& options, const Sinks& sinks, Progressed progressed)
-        : options_(options),
+    Sintered(State state, const std::string& place, const Options& options, const Sinks& sinks, Progressed progressed)
+        : place_(place),
+          options_(options),
           sinks_(sinks),
           progressed_(std::move(progressed)),
           wanted_(options, kiln::relative_density(state), state.time),
@@ -94,13 +96,13 @@ class Sintered {
     }
 
     /// What is to be known before the first step.
-    void warn() const {
+    void warn_of_start() const {
         for (const sintering::Kinetics::SlowPair& pair : method_->kinetics().taken_as_rigid())
-            sinks_.warn("contacts of " + pair.first + " and " + pair.second + " diffuse " + Json(pair.fraction).dump() +
+            warn("contacts of " + pair.first + " and " + pair.second + " diffuse " + Json(pair.fraction).dump() +
                         " times as fast as the fastest and count as rigid, as all below " +
                         Json(sintering::Kinetics::rigid_fraction).dump() + " do");
         if (method_->packing().statistics().coordination_number == 0.0)
-            sinks_.warn("no particles touch: nothing sinters until they do");
+            warn("no particles touch: nothing sinters until they do");
     }
 
     /// Steps to the end; false if a stop was requested on the way: the step that it interrupts is not taken.
@@ -119,11 +121,11 @@ class Sintered {
         }
         if (full()) {
             progressed_.converged = false;
-            sinks_.warn("the body is fully dense at " + Json(method_->time()).dump() +
+            warn("the body is fully dense at " + Json(method_->time()).dump() +
                         " s, which ends the run: this model has no pores that close");
         } else if (wanted_.densities_left()) {
             progressed_.converged = false;
-            sinks_.warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() +
+            warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() +
                         ", short of the required " + Json(wanted_.next_density()).dump());
         }
         return true;
@@ -139,6 +141,8 @@ class Sintered {
     }
 
    private:
+    void warn(const std::string& sentence) const { sinks_.warn(place_ + ": " + sentence); }
+
     bool full() const { return method_->relative_density() >= full_density * (1.0 - same_density); }
 
     void step() {
@@ -155,7 +159,7 @@ class Sintered {
         if (sinks_.history) sinks_.history->write(summary);
         sinks_.progress.detail(summary);
         if (density <= validity_limit && record.relative_density > validity_limit)
-            sinks_.warn("above a relative density of 0.9 grains grow, which this model leaves out");
+            warn("above a relative density of 0.9 grains grow, which this model leaves out");
         sinks_.progress.show(wanted_.fraction(record.relative_density, record.time),
                              "relative density " + Json(std::round(1e4 * record.relative_density) / 1e4).dump());
         // A signal that comes after the last look at it: this step's state is the last.
@@ -167,19 +171,20 @@ class Sintered {
     void write_state(Json summary, bool reported = true) {
         State reached = method_->state();
         summary["steps"] = method_->steps();
-        if (options_.method == "implicit") {
+        if (options_.method == Method::implicit) {
             summary["newton"] = progressed_.newton;
             summary["conjugate_gradients"] = progressed_.conjugate_gradients;
             summary["converged"] = progressed_.converged;
         }
-        if (reported && options_.report == "viscosity") {
-            for (const std::string& remark : add_viscosities(summary, reached, options_)) sinks_.warn(remark);
+        if (reported && options_.report == Report::viscosity) {
+            for (const std::string& remark : add_viscosities(summary, reached, options_)) warn(remark);
             progressed_.converged = progressed_.converged && summary["viscosity_converged"].get<bool>();
         }
         io::append_history(reached, sinks_.entry(summary));
         sinks_.states.write(std::move(reached));
     }
 
+    std::string place_;  // file and document, for warnings
     const Options& options_;
     const Sinks& sinks_;
     Progressed progressed_;
@@ -194,20 +199,23 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
     bool converged = !earlier || earlier->converged;
     std::size_t document = 0;
     std::unique_ptr<Sintered> last;
-    for (auto state = input.next_state(); state; state = input.next_state(), ++document) {
-        if (earlier && document < earlier->document) continue;
-        const bool taken_up = earlier && document == earlier->document;
-        Progressed progressed = taken_up ? *earlier : Progressed{.document = document, .fingerprint = "", .converged = converged};
-        if (sinks.checkpoint.wanted()) progressed.fingerprint = fingerprint(*state);
-        if (taken_up && progressed.fingerprint != earlier->fingerprint)
-            throw Error("the checkpoint is of another input than document " + std::to_string(document + 1));
-        last = std::make_unique<Sintered>(std::move(*state), options, sinks, progressed);
+    bool interrupted = false;
+    cli::for_each_state(input, [&](State state, const std::string& place) {
+        const std::size_t number = document++;
+        if (earlier && number < earlier->document) return true;
+        const bool taken_up = earlier && number == earlier->document;
+        Progressed progressed = taken_up ? *earlier : Progressed{.document = number, .fingerprint = "", .converged = converged};
+        if (sinks.checkpoint.wanted()) progressed.fingerprint = fingerprint(state);
+        if (taken_up && progressed.fingerprint != earlier->fingerprint) throw Error("the checkpoint is of another input");
+        last = std::make_unique<Sintered>(std::move(state), place, options, sinks, progressed);
         if (taken_up) last->take_up(sinks.checkpoint.found());
-        last->warn();
+        last->warn_of_start();
         const bool whole = last->run();
         converged = last->progressed().converged;
-        if (whole && (sinks.checkpoint.wanted() || !cli::stop_requested())) continue;
-        if (!sinks.checkpoint.wanted()) break;
+        interrupted = !whole && sinks.checkpoint.wanted();
+        return whole && (sinks.checkpoint.wanted() || !cli::stop_requested());
+    });
+    if (interrupted) {
         sinks.progress.clear();
         sinks.warn("interrupted; --resume resumes from the checkpoint");
         return cli::interrupted;
