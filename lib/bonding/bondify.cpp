@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "bonding/event_queue.h"
+#include "bonding/sweep.h"
 #include "core/neighbours.h"
 
 namespace kiln::bonding {

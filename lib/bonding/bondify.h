@@ -5,6 +5,7 @@
 
 #include "bonding/shrink.h"
 #include "core/state.h"
+#include "core/stop.h"
 #include "physics/bond_geometry.h"
 
 namespace kiln::bonding {

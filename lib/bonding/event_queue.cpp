@@ -3,11 +3,11 @@
 // Time is the sweep parameter s (m): dR summed over the sweeps. A particle's radius falls at a rate that never rises, because its
 // overlaps only become fewer. So the end of an overlap, foretold from the present rates, can only move later: a queue sorted by
 // foretold ends is right if the foremost is foretold anew before it is believed.
+#include "bonding/event_queue.h"
+
 #include <algorithm>
 #include <limits>
 #include <numbers>
-
-#include "bonding/shrink.h"
 
 namespace kiln::bonding {
 

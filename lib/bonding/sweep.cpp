@@ -1,8 +1,8 @@
 // sweep.cpp: the shrinking of overlapping spheres by finite decrements, Eq. 2-3 of Dosta et al. 2017 as they stand.
+#include "bonding/sweep.h"
+
 #include <algorithm>
 #include <numbers>
-
-#include "bonding/shrink.h"
 
 namespace kiln::bonding {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "io/json.h"
-#include "io/json_line.h"
+#include "io/json_values.h"
 
 namespace kiln::io {
 

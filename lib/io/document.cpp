@@ -12,6 +12,7 @@
 #include "io/array_types.h"
 #include "io/files.h"
 #include "io/json_line.h"
+#include "io/json_values.h"
 
 namespace kiln::io {
 

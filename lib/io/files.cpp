@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "io/state_io.h"
+#include "io/write_document.h"
 
 namespace kiln::io {
 

@@ -1,17 +1,15 @@
 // json_line.cpp: builds JSON from the parser's events; the library's own callback parser needs quadratic time.
 #include "io/json_line.h"
 
-#include <cmath>
 #include <vector>
 
 #include "core/types.h"
-#include "io/json.h"
+#include "io/json_values.h"
 
 namespace kiln::io {
 
 namespace {
 
-constexpr std::size_t longest_shown = 60;  // bytes of a datum in a message
 
 class Builder final : public nlohmann::json_sax<Json> {
    public:
@@ -88,28 +86,5 @@ Json parse_line(std::string_view line, const std::string& place) {
     Json::sax_parse(line.begin(), line.end(), &builder);
     return builder.take();
 }
-
-void check_finite(const Json& json, const std::string& where) {
-    if (json.is_number_float() && !std::isfinite(json.get<double>())) throw Error(where + " is not a finite number");
-    if (json.is_structured())
-        for (const auto& [key, value] : json.items()) check_finite(value, where + "." + key);
-}
-
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-Json carried_json(const std::string& text, const std::string& what) {
-    Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded()) throw Error(what + " is not JSON");
-    return json;
-}
-
-std::string clipped(const std::string& text) {
-    if (text.size() <= longest_shown) return text;
-    std::size_t length = longest_shown;
-    while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;  // not inside a UTF-8 character
-    return text.substr(0, length) + "…";
-}
-
-std::string shown(const Json& json) { return clipped(text_of(json)); }
 
 }  // namespace kiln::io

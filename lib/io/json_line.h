@@ -16,19 +16,4 @@ inline constexpr std::size_t most_keys = 1024;      // of one object, which the 
 /// nesting or keys than above.
 Json parse_line(std::string_view line, const std::string& place);
 
-/// JSON has no word for NaN and infinity, and the library would write null: throws Error that starts with where and names the key.
-void check_finite(const Json& json, const std::string& where);
-
-/// JSON as one line of text; what is no UTF-8 in it is replaced.
-std::string text_of(const Json& json);
-
-/// JSON of a text that a State carries; what: for the message of the Error thrown where it is none.
-Json carried_json(const std::string& text, const std::string& what);
-
-/// Text for a message, cut where it is long.
-std::string clipped(const std::string& text);
-
-/// JSON for a message, cut where it is long.
-std::string shown(const Json& json);
-
 }  // namespace kiln::io

@@ -1,8 +1,7 @@
-// material_io.cpp: materials and pairs of materials in a document's header.
-#include <cmath>
+// material_io.cpp: keys of materials and their ranges.
+#include "io/material_io.h"
 
-#include "io/json_line.h"
-#include "io/state_io.h"
+#include "io/json_values.h"
 
 namespace kiln::io {
 
@@ -28,25 +27,6 @@ constexpr Field fields[] = {
 constexpr const char* diffusion_key = "grain_boundary_diffusion";
 
 }  // namespace
-
-void put_back(Json& target, const Json& carried) {
-    if (target.is_object() && carried.is_object()) {
-        for (const auto& [key, value] : carried.items()) {
-            if (target.contains(key))
-                put_back(target[key], value);
-            else
-                target[key] = value;
-        }
-    } else if (target.is_array() && carried.is_array() && target.size() == carried.size()) {
-        for (std::size_t index = 0; index < target.size(); ++index) put_back(target[index], carried[index]);
-    }
-}
-
-double number_from(const Json& json, const std::string& where, double lowest) {
-    if (!json.is_number() || !std::isfinite(json.get<double>())) throw Error(where + " is " + shown(json) + ", not a number");
-    if (json.get<double>() < lowest) throw Error(where + " is " + shown(json) + ", below " + shown(lowest));
-    return json.get<double>();
-}
 
 Material material_from(const Json& json, const std::string& place) {
     if (!json.is_object() || !json.contains("name") || !json["name"].is_string())

@@ -18,27 +18,10 @@ State state_from(Document document);
 /// The state as a document; arrays are moved out of it. Throws Error that names array and row of a NaN or an infinity.
 Document document_from(State state);
 
-/// JSON of one material, as it stands in a document.
-Json material_json(const Material& material);
-
-/// Material from JSON; place is for the message of the Error thrown for a value that is no finite number or out of its range.
-Material material_from(const Json& json, const std::string& place);
-
-/// The same for a pair of materials under "contacts".
-Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials);
-MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place);
-
 /// What a state's history says: a list, an entry for each program that it went through. Throws Error where it is no such list.
 Json history_of(const State& state);
 
 /// Adds an entry to the history of a state. Throws Error that names a number in it that is not finite.
 void append_history(State& state, const Json& entry);
-
-/// Puts unknown keys back beside the known ones they stood with: into the objects of target, and those of its lists where the
-/// lengths agree. What target has already stays.
-void put_back(Json& target, const Json& carried);
-
-/// A finite number >= lowest, or Error that starts with where.
-double number_from(const Json& json, const std::string& where, double lowest);
 
 }  // namespace kiln::io

@@ -1,10 +1,11 @@
 // write_document.cpp: writing one document, as text or with 64-byte aligned binary arrays.
+#include "io/write_document.h"
+
 #include <cmath>
 
 #include "io/array_types.h"
-#include "io/document.h"
 #include "io/files.h"
-#include "io/json_line.h"
+#include "io/json_values.h"
 
 namespace kiln::io {
 

@@ -7,7 +7,8 @@ COUNT        ?= 10000
 FUZZ_CXX     ?= clang++-14
 FUZZ_FLAGS   := -std=c++20 -g1 -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined \
                 -Ilib -isystem /usr/include/eigen3
-FUZZ_SOURCES := tests/fuzz/reader_fuzz.cpp $(wildcard lib/io/*.cpp) lib/core/array.cpp lib/core/state.cpp lib/physics/materials.cpp
+FUZZ_SOURCES := tests/fuzz/reader_fuzz.cpp $(wildcard lib/io/*.cpp) lib/core/array.cpp lib/core/state.cpp \
+                lib/physics/materials.cpp lib/physics/schedule.cpp
 FUZZ_OBJECTS := $(FUZZ_SOURCES:%.cpp=$(BUILD)/fuzz/%.o)
 # The seeds are the conformance set; what is found goes to $(BUILD)/fuzz/corpus and is used again.
 # No input needs more memory than this, nor longer than this for one document.

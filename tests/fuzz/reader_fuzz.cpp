@@ -7,6 +7,7 @@
 
 #include "io/files.h"
 #include "io/state_io.h"
+#include "io/write_document.h"
 
 namespace {
 

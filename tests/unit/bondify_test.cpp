@@ -10,6 +10,7 @@
 #include "core/neighbours.h"
 #include "tests/physics/relative.h"
 #include "bonding/bondify.h"
+#include "bonding/event_queue.h"
 
 using namespace kiln;
 using namespace kiln::bonding;

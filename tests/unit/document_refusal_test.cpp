@@ -4,8 +4,9 @@
 
 #include <chrono>
 
-#include "io/json_line.h"
 #include "tests/unit/stream_support.h"
+#include "io/json_line.h"
+#include "io/json_values.h"
 
 namespace {
 

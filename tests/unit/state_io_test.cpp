@@ -7,6 +7,8 @@
 #include "io/state_io.h"
 #include "tests/physics/relative.h"
 #include "tests/unit/stream_support.h"
+#include "io/material_io.h"
+#include "io/json_values.h"
 
 namespace {
 

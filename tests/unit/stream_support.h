@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io/document.h"
+#include "io/write_document.h"
 
 namespace kiln::test {
 

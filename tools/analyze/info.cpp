@@ -6,6 +6,7 @@
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/report.h"
 #include "analysis/structure.h"
+#include "io/material_io.h"
 
 namespace kiln::analyze {
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "io/state_io.h"
+#include "io/json_values.h"
 
 namespace kiln::analyze {
 

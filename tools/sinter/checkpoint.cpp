@@ -4,7 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "io/json_line.h"
+#include "io/json_values.h"
 
 namespace kiln::sinter {
 

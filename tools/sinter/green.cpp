@@ -12,6 +12,7 @@
 #include "io/state_io.h"
 #include "physics/materials.h"
 #include "tools/sinter/green_options.h"
+#include "io/material_io.h"
 
 namespace kiln::sinter {
 

@@ -1,0 +1,22 @@
+// material_io.h: materials and pairs of materials in a document's header.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/state.h"
+#include "io/json.h"
+
+namespace kiln::io {
+
+/// JSON of one material, as it stands in a document.
+Json material_json(const Material& material);
+
+/// Material from JSON; place is for the message of the Error thrown for a value that is no finite number or out of its range.
+Material material_from(const Json& json, const std::string& place);
+
+/// The same for a pair of materials under "contacts".
+Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials);
+MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place);
+
+}  // namespace kiln::io
