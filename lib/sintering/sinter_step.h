@@ -58,6 +58,8 @@ class SinterStep {
    public:
     SinterStep(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs, std::span<const PairStep> step,
                const StepSettings& settings);
+    SinterStep(const SinterStep&) = delete;  // the solver refers to the network
+    SinterStep& operator=(const SinterStep&) = delete;
 
     /// Motion over the step with the geometry at its start, from a guess of it: first order in the length of the step.
     StepReport first_order(Motion& motion);

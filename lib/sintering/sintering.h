@@ -55,6 +55,8 @@ struct Checkpoint {
 class SinteringMethod {
    public:
     virtual ~SinteringMethod() = default;
+    SinteringMethod(const SinteringMethod&) = delete;  // methods refer to their own body
+    SinteringMethod& operator=(const SinteringMethod&) = delete;
 
     /// One step (the explicit method: a few), ended early at latest_time (s) or where the density reaches highest_density.
     /// Throws Error if nothing densifies any more although the step has no latest time.
