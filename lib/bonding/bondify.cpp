@@ -1,4 +1,4 @@
-// bondify.cpp: overlaps are found, particles shrink, bonds get their radii and lengths.
+// bondify.cpp: overlaps are found, particles shrink or stay, bonds get their radii and lengths.
 #include "bonding/bondify.h"
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "bonding/event_queue.h"
 #include "bonding/sweep.h"
 #include "core/neighbours.h"
+#include "physics/neck.h"
 
 namespace kiln::bonding {
 
@@ -89,28 +90,62 @@ double mean(std::span<const double> values) {
     return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-}  // namespace
-
-Summary bondify(State& state, const Options& options, const Watch& watch) {
+/// The particles shrink; their bonds, thin ones included.
+Bonds shrink(State& state, const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const Options& options,
+             Summary& summary, const Watch& watch) {
     Particles& particles = state.particles;
-    const std::vector<Pair> pairs = find_pairs(state.box, particles.position, particles.radius);
-    const std::vector<Overlap> overlaps = overlaps_of(state, pairs);
     Shrunk shrunk = options.method == Method::exact
                         ? shrink_exactly(particles.radius, overlaps, options.sharing, watch)
                         : shrink_by_sweeps(particles.radius, overlaps, options.sharing, options.decrement, watch);
-    Summary summary{.pairs = pairs.size(), .stopped = shrunk.stopped};
-
+    summary.stopped = shrunk.stopped;
     const long double before = solid_volume(particles.radius, {});
     const long double after = solid_volume(shrunk.radius, shrunk.volume);
     summary.volume_error = static_cast<double>(after / before - 1.0L);
 
     Bonds bonds = make_bonds(pairs, overlaps, shrunk, options, summary);
-    treat_thin(bonds, shrunk.radius, options, summary);
+    particles.radius = std::move(shrunk.radius);
+    return bonds;
+}
+
+/// The necks between particles that stay as they are, thin ones included.
+Bonds keep(const State& state, const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const Options& options,
+           Summary& summary, const Watch& watch) {
+    const std::vector<double>& radius = state.particles.radius;
+    NeckSizes sizes = neck_sizes(state, pairs, options.necks, watch);
+    const double box = state.box.volume();
+    summary.neck_factor = sizes.factor;
+    summary.limited = sizes.limited;
+    summary.solid_fraction = particle_volume(state.particles) / box;
+    summary.union_fraction = sizes.union_volume / box;
+    summary.union_error = sizes.union_error / box;
+    summary.fills = sizes.fills;
+    Bonds bonds;
+    for (std::size_t bond = 0; bond < overlaps.size(); ++bond) {
+        const auto [first, second, distance] = overlaps[bond];
+        bonds.pair.push_back({first, second});
+        bonds.image.push_back(pairs[bond].image);
+        bonds.length.push_back(physics::neck_length(distance, radius[static_cast<std::size_t>(first)],
+                                                    radius[static_cast<std::size_t>(second)], sizes.radius[bond]));
+    }
+    bonds.radius = std::move(sizes.radius);
+    bonds.volume.assign(overlaps.size(), 0.0);
+    return bonds;
+}
+
+}  // namespace
+
+Summary bondify(State& state, const Options& options, const Watch& watch) {
+    const Particles& particles = state.particles;
+    const std::vector<Pair> pairs = find_pairs(state.box, particles.position, particles.radius);
+    const std::vector<Overlap> overlaps = overlaps_of(state, pairs);
+    Summary summary{.pairs = pairs.size()};
+    Bonds bonds = options.method == Method::necks ? keep(state, pairs, overlaps, options, summary, watch)
+                                                  : shrink(state, pairs, overlaps, options, summary, watch);
+    treat_thin(bonds, particles.radius, options, summary);
     summary.bonds = bonds.size();
     summary.mean_diameter = 2.0 * mean(bonds.radius);
     summary.mean_length = mean(bonds.length);
     summary.coordination_number = 2.0 * static_cast<double>(bonds.size()) / static_cast<double>(particles.size());
-    particles.radius = std::move(shrunk.radius);
     state.bonds = std::move(bonds);
     return summary;
 }

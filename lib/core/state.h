@@ -49,7 +49,7 @@ struct Bonds {
     std::vector<Image> image;                       // added to the position of the pair's second particle
     std::vector<double> radius;                     // m
     std::vector<double> length;                     // m, Eq. 4 of Dosta et al. 2017
-    std::vector<double> volume;                     // m3, solid that the particles gave to the bond
+    std::vector<double> volume;                     // m3, solid beside that of the particles; none for necks
     std::vector<NamedArray> other;
 
     std::size_t size() const { return radius.size(); }

@@ -8,6 +8,7 @@
 
 #include "physics/diffusion.h"
 #include "physics/materials.h"
+#include "physics/neck.h"
 
 namespace kiln::sintering {
 
@@ -16,12 +17,6 @@ namespace {
 constexpr double same = 1e-15;  // relative, of equivalent times
 constexpr int max_halvings = 200;
 constexpr double warm = 3000.0;  // K, at which everything that diffuses at all does so visibly
-
-/// Largest contact radius over particle radius at equilibrium of grain boundary and surface, a/R = sin(psi/2); Bouvard & McMeeking
-/// 1996.
-double neck_limit_of(const Material& material) {
-    return material.dihedral_angle ? std::sin(0.5 * *material.dihedral_angle) : std::numeric_limits<double>::infinity();
-}
 
 }  // namespace
 
@@ -33,7 +28,7 @@ Kinetics::Kinetics(const State& state, const physics::Schedule& schedule)
         for (const Material& b : material_) {
             energy_.push_back(physics::mixed_surface_energy(physics::required(a.surface_energy, a, "surface_energy"),
                                                             physics::required(b.surface_energy, b, "surface_energy")));
-            neck_limit_.push_back(std::min(neck_limit_of(a), neck_limit_of(b)));
+            neck_limit_.push_back(std::min(physics::neck_limit(a), physics::neck_limit(b)));
         }
     for (const MaterialPair& pair : state.contacts)
         for (const auto& [a, b] :

@@ -73,6 +73,60 @@ setup() { cd "$BATS_TEST_TMPDIR"; }
     assert_equal "$(value '.history[-1].summary | [.clamped, .stopped] | tostring')" "[1,1]"
 }
 
+@test "bondify --method necks: radii and density stay, every contact has a neck, and the union fills what the mass fills" {
+    "$SINTER" green -n 300 --density 0.43 --seed 3 | "$SINTER" --temperature 1200C --to-density 0.5,0.67,0.88 -o sintered.kiln
+    "$BONDIFY" --method necks --text sintered.kiln -o necks.jsonl
+    for state in 1 2 3; do
+        "$ANALYZE" select --index $state --text sintered.kiln >before.jsonl
+        "$ANALYZE" select --index $state --text necks.jsonl >after.jsonl
+        assert_equal "$(jq -c .particles after.jsonl)" "$(jq -c .particles before.jsonl)"
+        for measure in density info; do
+            assert_equal "$("$ANALYZE" $measure after.jsonl | jq .relative_density)" "$("$ANALYZE" $measure before.jsonl | jq .relative_density)"
+        done
+        assert_equal "$("$ANALYZE" density after.jsonl | jq -c '[.coordination_number, .mean_overlap_ratio]')" \
+            "$("$ANALYZE" density before.jsonl | jq -c '[.coordination_number, .mean_overlap_ratio]')"
+        jq -e '.bonds.volume.data | all(. == 0)' after.jsonl
+        jq -e '.bonds.length.data | all(. >= 0)' after.jsonl
+        summary=$(jq '.history[-2].summary' after.jsonl)
+        near "$(jq .union_fraction <<<"$summary")" "$(jq .solid_fraction <<<"$summary")" 1e-4
+        jq -e '.method == "necks" and .necks == "mass" and .neck_factor > 0.9 and .neck_factor < 1.2 and .union_error < 2e-4' <<<"$summary"
+    done
+}
+
+@test "bondify --method necks --necks law: the law's own necks conserve mass up to 0.71 and lose it above" {
+    "$SINTER" green -n 300 --density 0.43 --seed 3 |
+        "$SINTER" --temperature 1200C --to-density 0.46,0.5,0.55,0.6,0.67,0.71,0.79,0.88 -o sintered.kiln
+    "$BONDIFY" --method necks --necks law --text sintered.kiln | jq -c '.history[-1].summary' >summaries.jsonl
+    assert_equal "$(jq -sc 'map(.neck_factor) | unique' summaries.jsonl)" "[1]"
+    row=0
+    for fraction in 0.460 0.500 0.552 0.603 0.673 0.710 0.777 0.841; do
+        found=$(jq -s ".[$row].union_fraction" summaries.jsonl)
+        run -0 jq -n "$found - $fraction | fabs < 0.003"
+        assert_output true
+        row=$((row + 1))
+    done
+}
+
+@test "bondify --method necks: free bodies and size distributions, the same bytes for any number of threads" {
+    "$SINTER" green -n 400 --density 0.43 --distribution lognormal:100nm:1.3 --seed 1 |
+        "$SINTER" --temperature 1200C --to-density 0.7 -o sizes.kiln
+    "$SINTER" green -n 400 --density 0.43 --seed 1 | "$SINTER" --temperature 1200C --boundary free --to-density 0.6 -o free.kiln
+    for threads in 1 4; do
+        OMP_NUM_THREADS=$threads "$BONDIFY" --method necks --threads $threads --text sizes.kiln free.kiln >$threads.jsonl
+    done
+    cmp 1.jsonl 4.jsonl
+    jq -se 'length == 2 and (map(.history[-1].summary | (.union_fraction / .solid_fraction - 1) | fabs < 1e-4) | all)' 1.jsonl
+}
+
+@test "bondify --method necks: where no factor fills the mass it says so and writes the nearest" {
+    sed -e 's/1.9e-7/1.3e-7/' "$DATA/two_spheres.jsonl" >deep.jsonl
+    run -0 --separate-stderr "$BONDIFY" --method necks --text deep.jsonl
+    assert_regex "$stderr" "document 1: no factor on the necks makes their union with the particles fill"
+    jq -e '.history[-1].summary | .neck_factor == 2 and .limited == 1 and .union_fraction < .solid_fraction' <<<"$output"
+    run -0 --separate-stderr "$BONDIFY" -q --method necks --text deep.jsonl
+    assert_equal "$stderr" ""
+}
+
 @test "bondify: the same bytes for any number of threads" {
     "$BONDIFY" -q --threads 1 "$DATA/cubic_series.jsonl" >one.kiln
     "$BONDIFY" -q --threads 4 "$DATA/cubic_series.jsonl" >four.kiln
@@ -85,6 +139,12 @@ setup() { cd "$BATS_TEST_TMPDIR"; }
     run -2 "$BONDIFY" --method sweep --decrement 1 "$DATA/two_spheres.jsonl"
     run -2 "$BONDIFY" --method sweep --decrement 0nm "$DATA/two_spheres.jsonl"
     run -2 "$BONDIFY" --method guess "$DATA/two_spheres.jsonl"
+    run -2 "$BONDIFY" --necks law "$DATA/two_spheres.jsonl"
+    assert_output --partial "--method necks"
+    for option in "--sharing pair" "--volume cylinder" "--decrement 1nm"; do
+        run -2 "$BONDIFY" --method necks $option "$DATA/two_spheres.jsonl"
+        assert_output --partial "${option%% *}"
+    done
     run -0 "$BONDIFY" --help
     assert_output --partial "0.0001nm"
 }

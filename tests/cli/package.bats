@@ -63,7 +63,7 @@ complete_line() {
     run -0 complete_line "$BEND" --bond-law n
     assert_output neck
     run -0 complete_line "$BONDIFY" --method ""
-    assert_output $'exact\nsweep'
+    assert_output $'exact\nsweep\nnecks'
     run -0 complete_line "$SINTER" gr
     assert_output green
 }

@@ -27,8 +27,29 @@ void report(const bonding::Summary& summary, const bonding::Options& options, co
              summary.lost_volume, " m3 does not fit into them");
     if (summary.stopped > 0)
         warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::smallest_share, " % of their radius");
-    if (options.drop_thin && summary.thin > 0)
+    if (options.drop_thin && summary.thin > 0 && options.method != bonding::Method::necks)
         warn(summary.thin, " thin bonds are left out, and ", summary.dropped_volume, " m3 of solid with them");
+    if (!summary.fills)
+        warn("no factor on the necks makes their union with the particles fill the ", summary.solid_fraction,
+             " of the box that the mass fills: with ", summary.neck_factor, " it fills ", summary.union_fraction,
+             ", and that is written; ", summary.limited, " of ", summary.pairs, " necks are as thick as they may be");
+}
+
+/// What the history of a state says about its necks.
+Json necks_json(const bonding::Summary& summary, const bonding::Options& options) {
+    return {{"method", "necks"},
+            {"necks", options.necks == bonding::Necks::mass ? "mass" : "law"},
+            {"pairs", summary.pairs},
+            {"bonds", summary.bonds},
+            {"mean_diameter", summary.mean_diameter},
+            {"mean_length", summary.mean_length},
+            {"coordination_number", summary.coordination_number},
+            {"neck_factor", summary.neck_factor},
+            {"solid_fraction", summary.solid_fraction},
+            {"union_fraction", summary.union_fraction},
+            {"union_error", summary.union_error},
+            {"limited", summary.limited},
+            {"thin", summary.thin}};
 }
 
 /// What the history of a state says about its transition.
@@ -66,7 +87,8 @@ int run(int argc, char** argv) {
         const bonding::Summary summary = bonding::bondify(state, options, watch);
         progress.clear();
         if (!common.quiet) report(summary, options, place);
-        const Json json = summary_json(summary, options);
+        const Json json =
+            options.method == bonding::Method::necks ? necks_json(summary, options) : summary_json(summary, options);
         progress.detail(json);
         io::append_history(state, cli::history_entry("bondify", app, json));
         output.write(std::move(state));
