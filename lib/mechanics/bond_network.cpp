@@ -4,10 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "mechanics/connectivity.h"
 #include "physics/materials.h"
+#include "physics/solid_law.h"
 
 namespace kiln::mechanics {
 
@@ -72,8 +74,17 @@ std::vector<std::int32_t> along_x(const Particles& particles) {
     return order;
 }
 
-void add_bond(BondedBody& body, const State& state, const BondModel& model, const std::vector<Moduli>& moduli, std::int32_t row,
-              std::array<std::int32_t, 2> nodes) {
+/// Part of each particle's surface under the caps of its bonds.
+std::vector<double> coverage_of(const State& state, const std::vector<std::int32_t>& bonds) {
+    std::vector<double> coverage(state.particles.size(), 0.0);
+    for (const std::int32_t bond : bonds)
+        for (const std::int32_t particle : state.bonds->pair[at(bond)])
+            coverage[at(particle)] += physics::cap_share(state.particles.radius[at(particle)], state.bonds->radius[at(bond)]);
+    return coverage;
+}
+
+void add_bond(BondedBody& body, const State& state, const std::vector<Moduli>& moduli, const std::vector<double>& coverage,
+              std::int32_t row) {
     const Bonds& bonds = *state.bonds;
     const auto [first, second] = bonds.pair[at(row)];
     const Vec3 vector = bond_vector(state, bonds, at(row));
@@ -83,22 +94,30 @@ void add_bond(BondedBody& body, const State& state, const BondModel& model, cons
     }
     const Moduli a = moduli[at(state.particles.material[at(first)])];
     const Moduli b = moduli[at(state.particles.material[at(second)])];
-    body.network.pair.push_back(nodes);
+    body.network.pair.push_back(body.nodes_of(bonds, row));
     body.network.vector.push_back(vector);
     body.network.radius.push_back(
         std::min({bonds.radius[at(row)], state.particles.radius[at(first)], state.particles.radius[at(second)]}));
-    body.network.stiffness.push_back(physics::bond_stiffness(model.law, model.shear, harmonic_mean(a.young, b.young),
-                                                             harmonic_mean(a.shear, b.shear),
-                                                             {state.particles.radius[at(first)], state.particles.radius[at(second)],
-                                                              vector.norm(), bonds.radius[at(row)], bonds.length[at(row)]}));
-    body.bond.push_back(row);
+    const physics::BondGeometry geometry{state.particles.radius[at(first)], state.particles.radius[at(second)],
+                                         vector.norm(),                     bonds.radius[at(row)],
+                                         bonds.length[at(row)],             coverage[at(first)],
+                                         coverage[at(second)]};
+    body.network.stiffness.push_back(physics::bond_stiffness(*body.model.law,
+                                                             body.model.shear.value_or(physics::BondShear::section),
+                                                             harmonic_mean(a.young, b.young), harmonic_mean(a.shear, b.shear),
+                                                             geometry));
 }
 
 }  // namespace
 
-BondedBody bonded_body(const State& state, const BondModel& model) {
+physics::BondLaw law_for(const State& state, const BondModel& model) {
+    if (model.law) return *model.law;
+    const bool necks = std::ranges::all_of(state.bonds->volume, [](double volume) { return volume == 0.0; });
+    return necks ? physics::BondLaw::solid : physics::BondLaw::series;
+}
+
+BondedPiece largest_piece(const State& state) {
     if (!state.bonds || state.bonds->size() == 0) throw Error("the state has no bonds; run bondify first");
-    const std::vector<Moduli> moduli = moduli_of(state.materials);
     const std::vector<std::int32_t> carrying = carrying_bonds(state);
     if (carrying.empty()) throw Error("no bond of the state is thick enough to carry a load");
     std::vector<std::array<std::int32_t, 2>> pairs;
@@ -107,7 +126,7 @@ BondedBody bonded_body(const State& state, const BondModel& model) {
     const Pieces pieces = find_pieces(along_x(state.particles), pairs);
     const std::size_t largest = pieces.largest();
 
-    BondedBody body;
+    BondedPiece body;
     body.negligible_bonds = state.bonds->size() - carrying.size();
     for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
         if (piece == largest) continue;
@@ -118,11 +137,26 @@ BondedBody bonded_body(const State& state, const BondModel& model) {
             body.fragment_particles += pieces.size(piece);
         }
     }
-    double radii = 0.0;
-    std::vector<std::int32_t> node_of(state.particles.size(), -1);
+    body.node.assign(state.particles.size(), -1);
     for (const std::int32_t particle : pieces.of(largest)) {
-        node_of[at(particle)] = static_cast<std::int32_t>(body.particle.size());
+        body.node[at(particle)] = static_cast<std::int32_t>(body.particle.size());
         body.particle.push_back(particle);
+    }
+    std::ranges::copy_if(carrying, std::back_inserter(body.bond),
+                         [&](std::int32_t row) { return body.nodes_of(*state.bonds, row)[0] >= 0; });
+    return body;
+}
+
+BondedBody bonded_body(const State& state, const BondModel& model) {
+    if (!state.bonds || state.bonds->size() == 0) throw Error("the state has no bonds; run bondify first");
+    const std::vector<Moduli> moduli = moduli_of(state.materials);
+    BondedBody body{largest_piece(state), {}, {law_for(state, model), model.shear}};
+    const bool solid = body.model.law == physics::BondLaw::solid;
+    if (solid && model.shear)
+        throw Error("the bonds are necks, and the law solid for them has a shear of its own: choose another law, or no shear");
+    if (!solid) body.model.shear = model.shear.value_or(physics::BondShear::section);
+    double radii = 0.0;
+    for (const std::int32_t particle : body.particle) {
         body.network.position.push_back(state.box.wrap(state.particles.position[at(particle)]));
         radii += state.particles.radius[at(particle)];
     }
@@ -130,10 +164,8 @@ BondedBody bonded_body(const State& state, const BondModel& model) {
     for (int axis = 0; axis < 3; ++axis) {
         if (state.box.periodic[at(axis)]) body.network.period[axis] = state.box.lengths[axis];
     }
-    for (std::size_t k = 0; k < carrying.size(); ++k) {
-        const std::array nodes{node_of[at(pairs[k][0])], node_of[at(pairs[k][1])]};
-        if (nodes[0] >= 0) add_bond(body, state, model, moduli, carrying[k], nodes);
-    }
+    const std::vector<double> coverage = coverage_of(state, body.bond);
+    for (const std::int32_t row : body.bond) add_bond(body, state, moduli, coverage, row);
     return body;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/state.h"
@@ -28,27 +29,46 @@ struct BondNetwork {
 };
 
 struct BondModel {
-    physics::BondLaw law = physics::BondLaw::series;
-    physics::BondShear shear = physics::BondShear::section;
+    std::optional<physics::BondLaw> law;      // none: that which fits the state, see law_for()
+    std::optional<physics::BondShear> shear;  // none: section; the law solid takes none
 };
 
-/// The largest piece of a state as a network, and what was left out of it.
-struct BondedBody {
-    BondNetwork network;
+/// The law of the model, or the one that fits a state with bonds: solid for necks, that is, where no bond adds a volume of its own
+/// to that of the particles; else series.
+physics::BondLaw law_for(const State& state, const BondModel& model);
+
+/// The largest piece of a state that carrying bonds hold together, and what was left out of it.
+struct BondedPiece {
     std::vector<std::int32_t> particle;  // node -> row of the state's particles
-    std::vector<std::int32_t> bond;      // bond of the network -> row of the state's bonds
+    std::vector<std::int32_t> node;      // row of the state's particles -> node; -1 outside
+    std::vector<std::int32_t> bond;      // bond of the piece -> row of the state's bonds
     std::size_t fragments = 0;           // further pieces of two particles or more
     std::size_t fragment_particles = 0;  // in those
     std::size_t rattlers = 0;            // particles without a bond
     std::size_t negligible_bonds = 0;    // thinner than negligible_radius
+
+    /// The nodes of a bond of the state.
+    std::array<std::int32_t, 2> nodes_of(const Bonds& bonds, std::int32_t row) const {
+        const auto [first, second] = bonds.pair[static_cast<std::size_t>(row)];
+        return {node[static_cast<std::size_t>(first)], node[static_cast<std::size_t>(second)]};
+    }
+};
+
+/// Nodes in an order that keeps neighbours together, from low x to high x. Throws Error for a state without bonds, or whose bonds
+/// are all negligible.
+BondedPiece largest_piece(const State& state);
+
+/// The largest piece as a network of springs.
+struct BondedBody : BondedPiece {
+    BondNetwork network;
+    BondModel model;  // with the law, and with the shear unless the law is solid
 };
 
 /// A bond thinner than this share of its smaller sphere's radius carries nothing: its bending stiffness is 1e-12 of a full one's.
 inline constexpr double negligible_radius = 1e-3;
 
-/// Network of the largest piece; nodes in an order that keeps neighbours together, from low x to high x. Bonds between unlike
-/// materials take the harmonic means of their moduli. Throws Error for a state without bonds or material data, or centres that
-/// coincide.
+/// Network of the largest piece. Bonds between unlike materials take the harmonic means of their moduli. Throws Error for a state
+/// without bonds or material data, centres that coincide, or a shear for the law solid.
 BondedBody bonded_body(const State& state, const BondModel& model);
 
 /// Node j relative to node i, m; the nearest image along periodic axes.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/solid_law.h"
+
 namespace kiln::physics {
 
 using std::numbers::pi;
@@ -53,6 +55,7 @@ BondCompliance bond_compliance(BondLaw law, const BondGeometry& geometry) {
 BondStiffness bond_stiffness(BondLaw law, BondShear shear, double young_modulus, double shear_modulus,
                              const BondGeometry& geometry) {
     if (geometry.radius <= 0.0) return {0.0, 0.0, 0.0, 0.0};
+    if (law == BondLaw::solid) return solid_stiffness(young_modulus, shear_modulus, geometry);
     const BondCompliance compliance = bond_compliance(law, geometry);
     double transverse = compliance.stretching / shear_modulus;
     if (shear == BondShear::timoshenko) {
@@ -66,6 +69,7 @@ BondStiffness bond_stiffness(BondLaw law, BondShear shear, double young_modulus,
 
 std::string name_of(BondLaw law) {
     switch (law) {
+        case BondLaw::solid: return "solid";
         case BondLaw::neck: return "neck";
         case BondLaw::centre: return "centre";
         default: return "series";

@@ -66,6 +66,34 @@ PROGRAM
     run -2 "$BEND" --method dynamic --damping 1 "$BAR"
 }
 
+@test "necks: auto takes the law solid, bonds of Eq. 2-4 the law series, and results say which and keep the density of the mass" {
+    cd "$BATS_TEST_TMPDIR"
+    "$SINTER" green -n 300 --density 0.43 --aspect 4:1:1 --seed 3 | "$SINTER" --temperature 1200C --to-density 0.67 -o sintered.kiln
+    "$BONDIFY" --method necks sintered.kiln -o necks.kiln
+    "$BONDIFY" sintered.kiln -o bonds.kiln
+    for tool in "$BEND --cycles 1" "$ANALYZE elastic"; do
+        run -0 --separate-stderr $tool necks.kiln
+        jq -e '.bond_law == "solid" and .bond_shear == null and (.relative_density - 0.67 | fabs) < 1e-6' <<<"$output"
+        solid=$output
+        run -0 --separate-stderr $tool --bond-law solid necks.kiln
+        assert_equal "$(jq -c '[.young_modulus, .curve, .stiffness]' <<<"$output")" "$(jq -c '[.young_modulus, .curve, .stiffness]' <<<"$solid")"
+        run -0 --separate-stderr $tool --bond-law series --bond-shear timoshenko necks.kiln
+        jq -e '.bond_law == "series" and .bond_shear == "timoshenko"' <<<"$output"
+        run -0 --separate-stderr $tool bonds.kiln
+        jq -e '.bond_law == "series" and .bond_shear == "section" and (.relative_density - 0.67 | fabs) < 1e-6' <<<"$output"
+        run -1 --separate-stderr $tool --bond-shear section necks.kiln
+        assert_regex "$stderr" "document 1: the bonds are necks, and the law solid for them has a shear of its own"
+        run -2 --separate-stderr $tool --bond-law solid --bond-shear section necks.kiln
+        assert_regex "$stderr" "bond-shear: has no meaning with --bond-law solid"
+    done
+    # A deformed bar of necks is one of necks again.
+    "$BEND" --cycles 1 --states bent.kiln necks.kiln -o bent.json
+    run -0 --separate-stderr "$BEND" --cycles 1 bent.kiln
+    jq -e '.bond_law == "solid"' <<<"$output"
+    run -0 --separate-stderr "$BEND" --cycles 1 --method dynamic necks.kiln
+    jq -e '.bond_law == "solid" and .energy.error < 0.01' <<<"$output"
+}
+
 @test "--friction: less is stored than the punch works, the supports thrust, and unloading does not retrace loading" {
     run -0 --separate-stderr "$BEND" --friction 0.3 --cycles 1 --points 12 "$BAR"
     jq -e '.method == "static" and .friction == 0.3 and .energy.friction > 0 and .energy.error < 0.01 and .horizontal_reaction > 0

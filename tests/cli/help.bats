@@ -88,7 +88,7 @@ setup_file() {
     run -2 --separate-stderr "$BEND" --mass-scaling 0
     assert_equal "$stderr" "bend: --mass-scaling: 0 is not greater than 0; see bend --help"
     run -2 --separate-stderr "$BEND" --bond-law glue
-    assert_equal "$stderr" "bend: --bond-law: 'glue' is none of series, neck, centre; see bend --help"
+    assert_equal "$stderr" "bend: --bond-law: 'glue' is none of auto, series, solid, neck, centre; see bend --help"
 }
 
 @test "every example of every help runs" {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -53,7 +54,7 @@ inline State make_lattice(const Lattice& lattice) {
         bonds.image.push_back(pair.image);
         bonds.radius.push_back(bond_radius);
         bonds.length.push_back(std::max(0.0, distance - 2.0 * std::sqrt(radius * radius - bond_radius * bond_radius)));
-        bonds.volume.push_back(0.0);
+        bonds.volume.push_back(std::numbers::pi * bond_radius * bond_radius * bonds.length.back());
     }
     state.bonds = std::move(bonds);
     return state;

@@ -23,6 +23,7 @@ constexpr const char* footer =
     "  affine          the stiffness of particles that follow the strain: an upper bound\n\n"
     "Examples:\n"
     "  bondify sintered.kiln | analyze elastic --table\n"
+    "  bondify --method necks sintered.kiln | analyze elastic --table\n"
     "  analyze elastic --bond-law neck bonded.kiln | jq .young_modulus";
 
 const std::vector<Column> columns{{"relative_density", "relative density", ""},
@@ -53,8 +54,8 @@ Json elastic_of(const State& state, const mechanics::BondModel& model, double to
     return {{"format", "dem-elastic"},
             {"version", io::format_version},
             {"relative_density", relative_density(state)},
-            {"bond_law", physics::name_of(model.law)},
-            {"bond_shear", physics::name_of(model.shear)},
+            {"bond_law", physics::name_of(*body.model.law)},
+            {"bond_shear", body.model.shear ? Json(physics::name_of(*body.model.shear)) : Json()},
             {"young_modulus", average.young_modulus},
             {"poisson_ratio", average.poisson_ratio},
             {"shear_modulus", average.shear_modulus},

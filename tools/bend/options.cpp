@@ -30,6 +30,7 @@ constexpr const char* footer =
     "work of the punch, unloading does not retrace loading, and the supports press the bar together (horizontal_reaction, N).\n\n"
     "Examples:\n"
     "  bondify sintered.kiln | bend | analyze modulus\n"
+    "  bondify --method necks sintered.kiln | bend | analyze modulus --table\n"
     "  bend --max-deflection 0.5nm --states bent.kiln -o bent.json bonded.kiln\n"
     "  bend --tensile-strength 500MPa bonded.kiln | jq .strength.bending_strength\n"
     "  for law in series neck centre; do bend --bond-law $law bonded.kiln; done |\n"

@@ -30,7 +30,7 @@ constexpr const char* footer =
     "Examples:\n"
     "  sinter --temperature 1200C --to-density 0.67,0.79 green.kiln | bondify | analyze bonds --table\n"
     "  bondify --method necks sintered.kiln | analyze elastic --table\n"
-    "  bondify --method necks --necks law sintered.kiln | head -1 | jq .history[-1].summary\n"
+    "  bondify --method necks --necks law sintered.kiln | analyze info | jq .last_step.summary\n"
     "  bondify --method sweep --decrement 0.01nm sintered.kiln -o bonded.kiln\n"
     "  bondify --volume cap-corrected sintered.kiln | bend | analyze modulus";
 
