@@ -67,6 +67,9 @@ constexpr Unit units[] = {
     {Dimension::compliance, "um/N", 1.0, 1e6},
     {Dimension::compliance, "nm/N", 1.0, 1e9},
     {Dimension::compliance, "mm/kN", 1.0, 1e6},
+    {Dimension::conductivity, "W/m/K", 1.0},
+    {Dimension::area_resistance, "m2K/W", 1.0},
+    {Dimension::area_resistance, "mm2K/W", 1.0, 1e6},
 };
 
 }  // namespace

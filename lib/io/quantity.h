@@ -23,6 +23,8 @@ enum class Dimension {
     angle,             // rad
     diffusion_volume,  // m3/s, grain boundary width times diffusivity
     compliance,        // m/N
+    conductivity,      // W/(m K)
+    area_resistance,   // m2 K/W, of an area to heat
 };
 
 /// SI value of a text such as "50nm". Upper and lower case count. Throws TextError that says what was given and which

@@ -72,6 +72,14 @@ TEST_CASE("every unit has its SI value, to the last bit") {
         {Dimension::angle, "1.5rad", 1.5},
         {Dimension::angle, "180deg", std::numbers::pi},
         {Dimension::diffusion_volume, "1.3e-8m3/s", 1.3e-8},
+        {Dimension::compliance, "3m/N", 3.0},
+        {Dimension::compliance, "3mm/N", 3e-3},
+        {Dimension::compliance, "3um/N", 3e-6},
+        {Dimension::compliance, "3nm/N", 3e-9},
+        {Dimension::compliance, "3mm/kN", 3e-6},
+        {Dimension::conductivity, "30W/m/K", 30.0},
+        {Dimension::area_resistance, "1e-8m2K/W", 1e-8},
+        {Dimension::area_resistance, "10mm2K/W", 1e-5},
     };
     std::vector<std::string> tested;
     for (const Case& each : cases) {
@@ -79,7 +87,7 @@ TEST_CASE("every unit has its SI value, to the last bit") {
         CHECK(parse_quantity(each.text, each.dimension) == each.value);
         tested.push_back(each.text);
     }
-    for (int dimension = 1; dimension <= static_cast<int>(Dimension::diffusion_volume); ++dimension) {
+    for (int dimension = 1; dimension <= static_cast<int>(Dimension::area_resistance); ++dimension) {
         std::istringstream known(known_units(static_cast<Dimension>(dimension)));
         for (std::string unit; std::getline(known >> std::ws, unit, ',');) {
             CAPTURE(unit);

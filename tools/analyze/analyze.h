@@ -9,6 +9,7 @@ int bonds(int argc, char** argv);
 int select(int argc, char** argv);
 int modulus(int argc, char** argv);
 int elastic(int argc, char** argv);
+int conductivity(int argc, char** argv);
 int fit(int argc, char** argv);
 
 }  // namespace kiln::analyze

@@ -24,6 +24,7 @@ constexpr std::array subcommands{
     Subcommand{"select", "the states of a stream nearest to given densities, times or places, or in between", analyze::select},
     Subcommand{"modulus", "Young's modulus from the last unloading of a bending test, simulated or measured", analyze::modulus},
     Subcommand{"elastic", "elastic tensor of a periodic cell of bonded particles", analyze::elastic},
+    Subcommand{"conductivity", "conductivity of a periodic cell of bonded particles", analyze::conductivity},
     Subcommand{"fit", "laws of Young's modulus against porosity through several tests or measurements", analyze::fit},
 };
 
@@ -36,7 +37,7 @@ int without_subcommand(int argc, char** argv) {
     std::vector<std::string> names;
     for (const Subcommand& each : subcommands) {
         names.emplace_back(each.name);
-        list += "  " + names.back() + std::string(10 - names.back().size(), ' ') + std::string(each.purpose) + "\n";
+        list += "  " + names.back() + std::string(14 - names.back().size(), ' ') + std::string(each.purpose) + "\n";
     }
     app.footer(list + "\nExamples:\n"
                "  analyze density --table sintered.kiln\n"
