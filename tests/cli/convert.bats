@@ -57,6 +57,20 @@ print((a["bonds"]["pair"] == b["bonds"]["pair"]).all(), (a["bonds"]["image"] == 
     assert_output "dem-convert: bare.data: its bonds have no radius; give --bond-radius"
 }
 
+@test "necks stay necks through every format that holds bonds: density of the mass, law solid" {
+    "$SINTER" green -n 200 --density 0.43 --seed 3 | "$SINTER" -q --temperature 1200C --to-density 0.7 | "$BONDIFY" -q --method necks -o necks.kiln
+    wanted=$("$ANALYZE" elastic necks.kiln | jq -c '[.relative_density, .bond_law, .young_modulus]')
+    assert_regex "$wanted" '^\[0\.7.*,"solid",'
+    for file in necks.data necks.dump necks.csv necks.jsonl; do
+        "$CONVERT" necks.kiln $file
+        "$CONVERT" --like necks.kiln $file back.kiln
+        same back.kiln necks.kiln bonds
+        found=$("$ANALYZE" elastic back.kiln | jq -c '[.relative_density, .bond_law, .young_modulus]')
+        assert_equal "$(jq -c '.[1]' <<<"$found")" '"solid"'
+        for k in 0 2; do near "$(jq ".[$k]" <<<"$found")" "$(jq ".[$k]" <<<"$wanted")" 1e-9; done
+    done
+}
+
 @test "LAMMPS data: the length of its bonds is that of Eq. 4 when nothing is said" {
     "$CONVERT" second.kiln second.data
     sed -E 's/length [^ ]+ //' second.data >without.data

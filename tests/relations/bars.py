@@ -82,7 +82,7 @@ def sweep(kind, count, dice, draw, faults_of):
     """Tries so many bars; the number of those that fail."""
     bad, tried, unmet, worst = 0, 0, 0, 0.0
     while tried < count:
-        law = ["--bond-law", dice.choice(["series", "neck", "centre"])]
+        law = ["--bond-law", dice.choice(["series", "solid", "neck", "centre"])]
         commands = packing(dice) + [[program("bend"), *law, *draw(dice)]]
         output, words, status = piped(commands)
         if output is None or status == 1 and any(each in words for each in NO_BAR):

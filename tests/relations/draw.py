@@ -90,7 +90,7 @@ def bar(trial, most=300, mixed=0.3):
             state["materials"] = [*state["materials"], SECOND]
             state["particles"]["material"] = (trial.random.uniform(size=number) < 0.3).astype("i4")
         state, = trial.states("bondify", "--quiet", trial.put("overlapping.kiln", state))
-        options = ["--quiet", f"--bond-law={trial.choose('series', 'neck', 'centre')}", "--points=4", "--cycles=1"]
+        options = ["--quiet", f"--bond-law={trial.choose('series', 'solid', 'neck', 'centre')}", "--points=4", "--cycles=1"]
         return state, options, trial.results("bend", *options, trial.put("bar.kiln", state))[0]
 
     return until_taken(make, "is in pieces", "does not reach its supports", "touches no particle", "does not bend downwards")

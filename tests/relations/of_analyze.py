@@ -149,7 +149,7 @@ def bonds_counted(trial):
 def elastic_rewritten(trial):
     """The elastic tensor is that of the cell, however it is written: order of particles and bonds, bonds the other way round,
     particles in other boxes: SOLVED."""
-    law = f"--bond-law={trial.choose('series', 'neck', 'centre')}"
+    law = f"--bond-law={trial.choose('series', 'solid', 'neck', 'centre')}"
     state, wanted = cell(trial, 200, law)
     found = _elastic(trial, _scattered(trial, state), law)
     near("stiffness", found["stiffness"], wanted["stiffness"], SOLVED)
@@ -194,7 +194,7 @@ def elastic_scaled(trial):
 def elastic_bounds(trial):
     """The tensor is symmetric (SOLVED), takes energy for every strain and no more than particles that follow the strain, its affine
     bound (1e-9 of the largest)."""
-    _, found = cell(trial, 200, f"--bond-law={trial.choose('series', 'neck', 'centre')}")
+    _, found = cell(trial, 200, f"--bond-law={trial.choose('series', 'solid', 'neck', 'centre')}")
     stiffness, affine = numpy.array(found["stiffness"]), numpy.array(found["affine"])
     near("symmetry", stiffness, stiffness.T, SOLVED)
     scale = numpy.abs(affine).max()

@@ -141,3 +141,53 @@ def bondify_sweep(trial):
     same("bonds", swept["bonds"]["pair"], exact["bonds"]["pair"])
     contacts = numpy.bincount(exact["bonds"]["pair"].ravel()).max(initial=0)
     near("radii", swept["particles"]["radius"], exact["particles"]["radius"], 3 * contacts * decrement, 1.0)
+
+
+def bondify_necks(trial):
+    """Necks leave the particles as they are, their bonds have no volume, and their radii are those of the law within the dihedral
+    limit, no narrower than where the spheres meet (ROUNDED); of what is moved, renumbered, turned and mirrored they are the same
+    necks, and the volume of their union is the same within four of its standard errors."""
+    state, options = green(trial, 200, tiny=0.3), ["--quiet", "--method=necks", "--necks=law"]
+    made = _made(trial, state, options)
+    for name in ("position", "radius"):
+        same(name, made["particles"][name], state["particles"][name])
+    ids, columns = _table(made)
+    same("volume", columns[:, 3], numpy.zeros(len(columns)))
+    pair, radius = made["bonds"]["pair"], state["particles"]["radius"]
+    r1, r2 = radius[pair].T
+    apart = made["particles"]["position"][pair[:, 1]] + image_of(made) * lengths(made) - made["particles"]["position"][pair[:, 0]]
+    d = numpy.linalg.norm(apart, axis=1)
+    limit = [numpy.sin(material.get("dihedral_angle", numpy.pi) / 2) for material in state["materials"]]
+    kind = state["particles"].get("material", numpy.zeros(len(radius), int))
+    most = numpy.minimum(r1, r2) * numpy.array(limit)[kind[pair]].min(axis=1)
+    plane = (d + (r1 - r2) * (r1 + r2) / d) / 2
+    met = numpy.where((plane <= 0) | (plane >= d), numpy.minimum(r1, r2), numpy.sqrt(numpy.maximum(r1**2 - plane**2, 0)))
+    wanted = numpy.maximum(numpy.minimum(numpy.sqrt(4 * r1 * r2 / (r1 + r2) * (r1 + r2 - d).clip(min=0)), most), met)
+    near("neck radius", made["bonds"]["radius"], wanted, 1e-7)
+    near("length below zero", min(made["bonds"]["length"].min(initial=0.0), 0.0), 0, 1e-12, 1.0)
+
+    count = len(radius)
+    other = renumbered(state, trial.random.permutation(count))
+    other = turned(other, trial.random.permutation(3), trial.random.choice((-1, 1), 3))
+    other = moved_by_boxes(other, trial.random.integers(-20, 21, (count, 3)))
+    found = _made(trial, other, options, "moved.kiln")
+    found_ids, found_columns = _table(found)
+    same("ends of necks", found_ids, ids)
+    for k, name in enumerate(("distance", "radius", "length")):
+        near(f"neck {name}", found_columns[:, k], columns[:, k], 1e-6)
+    told, again = summary(made), summary(found)
+    error = 4 * (told["union_error"] + again["union_error"]) + 1e-9
+    near("union", again["union_fraction"], told["union_fraction"], error, 1.0)
+
+
+def bondify_necks_fill(trial):
+    """With one factor on all necks the union fills what the mass fills (2e-5), unless as many necks as there can be are at their
+    limit; lengths times a power of two give the same digits."""
+    state, factor = green(trial, 200), 2.0 ** trial.random.integers(-20, 41)
+    options = ["--quiet", "--method=necks"]
+    made, larger = _made(trial, state, options), _made(trial, scaled(state, factor), options, "scaled.kiln")
+    same("radii of necks", larger["bonds"]["radius"], made["bonds"]["radius"] * factor)
+    told = summary(made)
+    same("what is told", {**summary(larger), "mean_diameter": 0, "mean_length": 0}, {**told, "mean_diameter": 0, "mean_length": 0})
+    if told["neck_factor"] < 2:
+        near("union", told["union_fraction"], told["solid_fraction"], 2e-5)

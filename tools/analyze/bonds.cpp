@@ -19,7 +19,7 @@ namespace {
 constexpr const char* footer =
     "Keys of a result:\n"
     "  relative_density, particles, count, mean_diameter (m), mean_length (m)\n"
-    "  bond_volume_fraction  of the solid\n"
+    "  bond_volume_fraction  of the solid; 0 for necks, whose solid is counted with the particles\n"
     "  histogram             of the radii {edges (m), counts}\n"
     "Where the bonds carry forces, as in the states that bend writes, also, tension positive:\n"
     "  normal_force, normal_stress (force over section), fibre_stress (with the moment as if it only bent\n"

@@ -21,7 +21,7 @@ constexpr const char* footer =
     "  time (s), relative_density, particles\n"
     "  measure                   volume that the density refers to, see below\n"
     "  coordination_number       contacts per particle: overlaps, or bonds where there are some\n"
-    "  mean_overlap_ratio        h/2R, or h/(r1 + r2) of unequal spheres; 0 for bonds\n"
+    "  mean_overlap_ratio        h/2R, or h/(r1 + r2) of unequal spheres; 0 for bonds of shrunk particles\n"
     "  overlap_ratio, diameter   {mean, standard_deviation, minimum, maximum}, diameter in m\n"
     "  clusters                  groups that contacts connect, single particles included\n"
     "  largest_cluster_fraction  of the particles\n"

@@ -161,12 +161,12 @@ def nearest_image(document, pair):
 
 
 def neck_length(document, pair, image, radius):
-    """Length of bonds between the particles' surfaces, m (Eq. 4 of Dosta et al. 2017)."""
+    """Length of bonds between the particles' surfaces, m (Eq. 4 of Dosta et al. 2017); zero for one that spheres hide."""
     low, high = bounds(document["box"])
     position, size = document["particles"]["position"], document["particles"]["radius"]
     distance = numpy.linalg.norm(position[pair[:, 1]] + image * (high - low) - position[pair[:, 0]], axis=1)
     caps = [numpy.sqrt(numpy.maximum(size[pair[:, end]]**2 - radius**2, 0.0)) for end in (0, 1)]
-    return distance - caps[0] - caps[1]
+    return numpy.maximum(distance - caps[0] - caps[1], 0.0)
 
 
 def rows_of(ids, wanted, place):
