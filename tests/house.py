@@ -8,7 +8,7 @@ LONGEST_LINE = 132  # characters
 # Which parts a part may include, besides itself: those on the floors below it.
 GROUND = ["lib/core"]
 FIRST = GROUND + ["lib/physics", "lib/linalg", "lib/bonding"]
-SECOND = FIRST + ["lib/sintering", "lib/mechanics", "lib/analysis", "lib/io"]
+SECOND = FIRST + ["lib/sintering", "lib/mechanics", "lib/voxel", "lib/analysis", "lib/io"]
 LIBRARY = SECOND + ["lib/bending", "lib/packing"]
 BELOW = {
     "lib/core": [],
@@ -17,6 +17,7 @@ BELOW = {
     "lib/bonding": GROUND + ["lib/physics"],
     "lib/sintering": FIRST,
     "lib/mechanics": FIRST,
+    "lib/voxel": FIRST,
     "lib/analysis": FIRST,
     "lib/io": FIRST,
     "lib/bending": SECOND,

@@ -44,6 +44,19 @@ Moduli reuss_moduli(const Mat6& s) {
     return {1.0 / (direct + 2.0 * cross), 15.0 / (4.0 * (direct - cross) + 3.0 * shear)};
 }
 
+/// The inverse of the stiffness, and the stiffness made symmetric.
+struct Compliance {
+    Mat6 stiffness, compliance;
+};
+
+Compliance compliance_of(const Mat6& stiffness) {
+    const Mat6 symmetric = (stiffness + stiffness.transpose()) / 2.0;
+    const Eigen::LLT<Mat6> factor(symmetric);
+    if (factor.info() != Eigen::Success)
+        throw Error("the elastic tensor is not positive definite: some strain meets no resistance");
+    return {symmetric, factor.solve(Mat6::Identity())};
+}
+
 }  // namespace
 
 ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop) {
@@ -65,14 +78,13 @@ ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double t
 }
 
 IsotropicAverage isotropic_average(const Mat6& stiffness) {
-    const Mat6 symmetric = (stiffness + stiffness.transpose()) / 2.0;
-    const Eigen::LLT<Mat6> factor(symmetric);
-    if (factor.info() != Eigen::Success)
-        throw Error("the elastic tensor is not positive definite: some strain meets no resistance");
+    const auto [symmetric, compliance] = compliance_of(stiffness);
     const auto [bulk, shear] = voigt_moduli(symmetric);
-    const auto [reuss_bulk, reuss_shear] = reuss_moduli(factor.solve(Mat6::Identity()));
+    const auto [reuss_bulk, reuss_shear] = reuss_moduli(compliance);
     const double young = 9.0 * bulk * shear / (3.0 * bulk + shear);
     return {young, shear, bulk, young / (2.0 * shear) - 1.0, 5.0 * shear / reuss_shear + bulk / reuss_bulk - 6.0};
 }
+
+Vec3 axial_moduli(const Mat6& stiffness) { return compliance_of(stiffness).compliance.diagonal().head<3>().cwiseInverse(); }
 
 }  // namespace kiln::mechanics
