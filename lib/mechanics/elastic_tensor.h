@@ -30,7 +30,8 @@ struct IsotropicAverage {
 IsotropicAverage isotropic_average(const Mat6& stiffness);
 
 /// Young's moduli along x, y and z, Pa: 1/S_aa of the inverse of the stiffness, pulled along an axis with free faces around. Their
-/// mean differs from the isotropic average by up to a tenth in a small cell. Throws Error for a tensor that is not positive definite.
+/// mean differs from the isotropic average by up to a tenth in a small cell. Throws Error for a tensor that is not positive
+/// definite.
 Vec3 axial_moduli(const Mat6& stiffness);
 
 }  // namespace kiln::mechanics

@@ -10,6 +10,7 @@ int select(int argc, char** argv);
 int modulus(int argc, char** argv);
 int elastic(int argc, char** argv);
 int conductivity(int argc, char** argv);
+int voxel(int argc, char** argv);
 int fit(int argc, char** argv);
 
 }  // namespace kiln::analyze

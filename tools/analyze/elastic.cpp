@@ -1,14 +1,17 @@
-// elastic.cpp: elastic tensor of periodic states of bonded particles.
+// elastic.cpp: elastic tensor of periodic states of bonded particles, as a network of bonds or on voxels, and of images.
 #include <CLI/CLI.hpp>
+#include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "tools/common/bond_model.h"
-#include "tools/common/value_options.h"
 #include "io/state_io.h"
 #include "mechanics/elastic_tensor.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/report.h"
+#include "tools/analyze/voxel_options.h"
+#include "tools/common/bond_model.h"
 #include "tools/common/each_state.h"
+#include "tools/common/quantity_options.h"
+#include "tools/common/value_options.h"
 
 namespace kiln::analyze {
 
@@ -16,31 +19,61 @@ namespace {
 
 constexpr const char* footer =
     "Keys of a result:\n"
-    "  relative_density, bond_law, iterations, residual, fragments, rattlers\n"
+    "  model, relative_density, iterations, residual\n"
     "  stiffness       6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear\n"
     "  young_modulus (Pa), poisson_ratio  of its isotropic (Voigt) average\n"
+    "  axial_moduli    Young's moduli along x, y, z, Pa; axial_modulus: their mean\n"
     "  anisotropy      0 for an isotropic tensor (Ranganathan & Ostoja-Starzewski 2008)\n"
-    "  affine          the stiffness of particles that follow the strain: an upper bound\n\n"
+    "of a network also\n"
+    "  bond_law, fragments, rattlers\n"
+    "  affine          the stiffness of particles that follow the strain: an upper bound\n"
+    "of voxels also\n"
+    "  extrapolation_error (Pa, of young_modulus), poisson_ratio_error, axial_modulus_error\n"
+    "  union_fraction  of the box, by spheres and bonds together\n"
+    "  grids           what each grid gave\n"
+    "A gap between two spheres stays open on voxels that are wider than it. An image is taken as it is: nothing is extrapolated, "
+    "and "
+    "where few voxels cross a neck it is too stiff.\n\n"
     "Examples:\n"
     "  bondify sintered.kiln | analyze elastic --table\n"
     "  bondify --method necks sintered.kiln | analyze elastic --table\n"
-    "  analyze elastic --bond-law neck bonded.kiln | jq .young_modulus";
+    "  analyze elastic --bond-law neck bonded.kiln | jq .young_modulus\n"
+    "  analyze select --density 0.79 sintered.kiln | bondify --method necks |\n"
+    "      analyze elastic --model voxel --voxels 4,6 --table\n"
+    "  analyze select --density 0.79 sintered.kiln | analyze voxel --voxels 5 -o body.npy\n"
+    "  analyze elastic --model voxel --image body.npy --young-modulus 400GPa --poisson-ratio 0.23";
 
-const std::vector<Column> columns{{"relative_density", "relative density", ""},
-                                  {"young_modulus", "Young's modulus", "Pa"},
-                                  {"poisson_ratio", "Poisson's ratio", ""},
-                                  {"anisotropy", "anisotropy", ""},
-                                  {"affine_young_modulus", "affine bound", "Pa"},
-                                  {"bond_law", "bond law", ""},
-                                  {"iterations", "iterations", ""}};
+const std::vector<Column> network_columns{{"relative_density", "relative density", ""},
+                                          {"young_modulus", "Young's modulus", "Pa"},
+                                          {"poisson_ratio", "Poisson's ratio", ""},
+                                          {"anisotropy", "anisotropy", ""},
+                                          {"affine_young_modulus", "affine bound", "Pa"},
+                                          {"bond_law", "bond law", ""},
+                                          {"iterations", "iterations", ""}};
 
-Json rows_of(const mechanics::Mat6& matrix) {
-    Json rows = Json::array();
-    for (int row = 0; row < 6; ++row) rows.push_back(std::vector<double>(matrix.row(row).begin(), matrix.row(row).end()));
-    return rows;
+const std::vector<Column> voxel_columns{{"relative_density", "relative density", ""},
+                                        {"union_fraction", "union", ""},
+                                        {"young_modulus", "Young's modulus", "Pa"},
+                                        {"extrapolation_error", "+-", "Pa"},
+                                        {"poisson_ratio", "Poisson's ratio", ""},
+                                        {"poisson_ratio_error", "+-", ""},
+                                        {"anisotropy", "anisotropy", ""},
+                                        {"iterations", "iterations", ""}};
+
+Json averages_json(const mechanics::Mat6& stiffness) {
+    const mechanics::IsotropicAverage average = mechanics::isotropic_average(stiffness);
+    const Vec3 axial = mechanics::axial_moduli(stiffness);
+    return {{"young_modulus", average.young_modulus},
+            {"poisson_ratio", average.poisson_ratio},
+            {"shear_modulus", average.shear_modulus},
+            {"bulk_modulus", average.bulk_modulus},
+            {"anisotropy", average.anisotropy},
+            {"axial_moduli", {axial[0], axial[1], axial[2]}},
+            {"axial_modulus", axial.mean()},
+            {"stiffness", rows_of(stiffness)}};
 }
 
-Json elastic_of(const State& state, const mechanics::BondModel& model, double tolerance, bool& converged) {
+Json of_network(const State& state, const mechanics::BondModel& model, double tolerance) {
     const auto& periodic = state.box.periodic;
     if (!std::all_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; }))
         throw Error(
@@ -48,29 +81,49 @@ Json elastic_of(const State& state, const mechanics::BondModel& model, double to
     const mechanics::BondedBody body = mechanics::bonded_body(state, model);
     const mechanics::ElasticTensor tensor =
         mechanics::elastic_tensor(body.network, state.box.volume(), tolerance, cli::stop_requested);
-    const mechanics::IsotropicAverage average = mechanics::isotropic_average(tensor.stiffness);
-    const mechanics::IsotropicAverage affine = mechanics::isotropic_average(tensor.affine);
-    converged = converged && tensor.converged;
-    return {{"format", "dem-elastic"},
-            {"version", io::format_version},
-            {"relative_density", relative_density(state)},
-            {"bond_law", physics::name_of(*body.model.law)},
-            {"bond_shear", body.model.shear ? Json(physics::name_of(*body.model.shear)) : Json()},
-            {"young_modulus", average.young_modulus},
-            {"poisson_ratio", average.poisson_ratio},
-            {"shear_modulus", average.shear_modulus},
-            {"bulk_modulus", average.bulk_modulus},
-            {"anisotropy", average.anisotropy},
-            {"stiffness", rows_of(tensor.stiffness)},
-            {"affine", rows_of(tensor.affine)},
-            {"affine_young_modulus", affine.young_modulus},
-            {"iterations", tensor.iterations},
-            {"residual", tensor.residual},
-            {"converged", tensor.converged},
-            {"fragments", body.fragments},
-            {"fragment_particles", body.fragment_particles},
-            {"rattlers", body.rattlers},
-            {"negligible_bonds", body.negligible_bonds}};
+    Json result{{"format", "dem-elastic"},
+                {"version", io::format_version},
+                {"model", "network"},
+                {"relative_density", relative_density(state)},
+                {"bond_law", physics::name_of(*body.model.law)},
+                {"bond_shear", body.model.shear ? Json(physics::name_of(*body.model.shear)) : Json()}};
+    result.update(averages_json(tensor.stiffness));
+    result.update(Json{{"affine", rows_of(tensor.affine)},
+                       {"affine_young_modulus", mechanics::isotropic_average(tensor.affine).young_modulus},
+                       {"iterations", tensor.iterations},
+                       {"residual", tensor.residual},
+                       {"converged", tensor.converged},
+                       {"fragments", body.fragments},
+                       {"fragment_particles", body.fragment_particles},
+                       {"rattlers", body.rattlers},
+                       {"negligible_bonds", body.negligible_bonds}});
+    return result;
+}
+
+Json of_voxels(const std::vector<voxel::OnGrid>& grids, double density, voxel::Order order) {
+    const Limits limits(grids, order);
+    Json list = Json::array();
+    std::vector<double> young, poisson, axial;
+    for (const voxel::OnGrid& grid : grids) {
+        Json each = grid_json(grid);
+        const Json averages = averages_json(grid.found.tensor);
+        for (const char* key : {"young_modulus", "poisson_ratio", "axial_modulus"}) each[key] = averages[key];
+        young.push_back(each["young_modulus"]);
+        poisson.push_back(each["poisson_ratio"]);
+        axial.push_back(each["axial_modulus"]);
+        list.push_back(std::move(each));
+    }
+    const mechanics::Mat6 stiffness = limits.tensor();
+    if (!(stiffness.selfadjointView<Eigen::Lower>().ldlt().vectorD().minCoeff() > 0.0))
+        throw Error("the grids are too coarse for this state: extrapolated, some strain meets no resistance");
+    Json result{{"format", "dem-elastic"}, {"version", io::format_version}, {"model", "voxel"}, {"relative_density", density}};
+    result.update(averages_json(stiffness));
+    result.update(Json{{"extrapolation_error", limits.of(young).error},
+                       {"poisson_ratio_error", limits.of(poisson).error},
+                       {"axial_modulus_error", limits.of(axial).error}});
+    result.update(solves_json(grids));
+    result["grids"] = std::move(list);
+    return result;
 }
 
 }  // namespace
@@ -78,24 +131,53 @@ Json elastic_of(const State& state, const mechanics::BondModel& model, double to
 int elastic(int argc, char** argv) {
     cli::Common common;
     bool table = false;
-    double tolerance = 1e-8;
+    double young = 0.0, poisson = 0.0;
+    VoxelOptions options;
     mechanics::BondModel model;
-    CLI::App app{"Finds the elastic tensor of every state: a periodic cell of bonded particles under six strains.",
-                 "analyze elastic"};
+    CLI::App app{"Finds the elastic tensor of every state, a periodic cell under six strains, or of an image.", "analyze elastic"};
     app.footer(footer);
     add_table(app, table);
+    options.add_to(app, "springs between the particles, by --bond-law", "Unbalanced force over load");
     cli::add_bond_model(app, model);
-    cli::add_number(app, "--tolerance", tolerance, {1e-14, 1e-2}, "Unbalanced force over load at which a solve ends");
+    cli::add_quantity(app, "--young-modulus", young, io::Dimension::pressure, "With --image: Young's modulus of the solid");
+    cli::add_number(app, "--poisson-ratio", poisson, {-0.999, 0.499}, "With --image: Poisson's ratio of the solid")
+        ->default_str("");
     common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);
+    options.check(app, {"--bond-law", "--bond-shear"}, {"--young-modulus", "--poisson-ratio"}, common);
+    if (!options.image.empty() && !(young > 0.0)) throw CLI::ValidationError("--young-modulus", "is not greater than 0");
 
-    io::Input input(common.files, cli::stop_requested);
-    Report report(common, table, columns);
+    Report report(common, table, options.model == Model::voxel ? voxel_columns : network_columns);
     bool converged = true;
-    cli::for_each_state(input, [&](const State& state, const std::string&) {
-        report.add(elastic_of(state, model, tolerance, converged));
-        return true;
-    });
+    const auto add = [&](Json result) {
+        converged = converged && result["converged"].get<bool>();
+        report.add(std::move(result));
+    };
+    cli::Progress progress("analyze elastic", common);
+    const Watch watch{cli::stop_requested, [&](double fraction) { progress.show(fraction, "voxels"); }};
+    if (!options.image.empty()) {
+        const voxel::Image image = read_image(options.image);
+        announce_memory<voxel::Solid>("analyze elastic", {image.count}, common);
+        const voxel::OnGrid found = cli::at_place(options.image, [&] {
+            return voxel::of_image(image, std::vector{voxel::solid(young, poisson)}, options.tolerance, watch);
+        });
+        add(of_voxels({found}, found.union_fraction, voxel::Order::first));
+    } else {
+        io::Input input(common.files, cli::stop_requested);
+        cli::for_each_state(input, [&](const State& state, const std::string&) {
+            if (options.model == Model::network) {
+                add(of_network(state, model, options.tolerance));
+                return true;
+            }
+            const voxel::Phases<voxel::Solid> phases = voxel::elastic_phases(state);
+            const auto grids = voxel::grids_of(state, options.voxels);
+            announce_memory<voxel::Solid>("analyze elastic", grids, common);
+            add(of_voxels(voxel::on_grids(state, phases, grids, options.tolerance, watch), relative_density(state),
+                          order_of(state)));
+            return true;
+        });
+    }
+    progress.clear();
     report.finish();
     return converged ? cli::done : cli::not_converged;
 }
