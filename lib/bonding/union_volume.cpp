@@ -131,17 +131,18 @@ void UnionVolume::find_near(std::span<const double> reach) {
     });
 }
 
-/// Spheres, beside its own, that a point at a particle lies in; the point is relative to its centre.
-std::size_t UnionVolume::spheres_at(std::size_t row, const Vec3& point) const {
-    std::size_t count = 0;
-    for (const Near& near : near_.of(row)) count += (point - near.vector).squaredNorm() < square(radius_[at(near.row)]);
-    return count;
+/// Of the particles near one, those whose sphere or necks may reach into a ball about a place relative to it: few, also where one has
+/// thousands of neighbours.
+void UnionVolume::find_reaching(std::size_t row, const Vec3& centre, double size, std::vector<Near>& reaching) const {
+    reaching.clear();
+    for (const Near& near : near_.of(row))
+        if ((near.vector - centre).squaredNorm() < square(swollen_[at(near.row)] + size)) reaching.push_back(near);
 }
 
 /// What of the volume at a point in a half neck of a particle is this neck's: nothing in a sphere, else an equal part of what all
-/// necks there have.
-double UnionVolume::share_of_ring(std::size_t row, const Vec3& point) const {
-    for (const Near& near : near_.of(row))
+/// necks there have. The point is relative to the particle's centre.
+double UnionVolume::share_of_ring(std::size_t row, std::span<const Near> reaching, const Vec3& point) const {
+    for (const Near& near : reaching)
         if ((point - near.vector).squaredNorm() < square(radius_[at(near.row)])) return 0.0;
     std::size_t necks = 0;
     const auto count = [&](std::size_t particle, const Vec3& place) {
@@ -153,7 +154,7 @@ double UnionVolume::share_of_ring(std::size_t row, const Vec3& point) const {
         }
     };
     count(row, point);
-    for (const Near& near : near_.of(row)) count(at(near.row), point - near.vector);
+    for (const Near& near : reaching) count(at(near.row), point - near.vector);
     return 1.0 / static_cast<double>(std::max<std::size_t>(1, necks));
 }
 
@@ -164,15 +165,19 @@ UnionVolume::Part UnionVolume::lens(std::size_t row, std::size_t index) const {
     const double R = end.other_radius, height = std::clamp(R - (end.distance - end.plane), 0.0, 2.0 * R);
     if (height == 0.0) return {};
     const double volume = pi * square(height) * (R - height / 3.0);
-    if (near_.of(row).size() < 2) return {volume, 0.0};
+    const Vec3 pole = (end.distance - R) * end.direction;
+    std::vector<Near> reaching;
+    find_reaching(row, pole, std::sqrt(2.0 * R * height), reaching);
+    if (reaching.size() < 2) return {volume, 0.0};
     const Across across(end.direction);
     Mean triple;
     for (std::size_t k = 0; k < points_; ++k) {
-        const Sample at = sample(index * points_ + k);
-        const double from_pole = height * std::sqrt(at.depth), along = R - from_pole;
-        const double section = std::sqrt(at.section * from_pole * (R + along));
-        const Vec3 point = (end.distance - along) * end.direction + across.at(section, at.angle);
-        const auto spheres = static_cast<double>(1 + spheres_at(row, point));
+        const Sample at_point = sample(index * points_ + k);
+        const double from_pole = height * std::sqrt(at_point.depth), along = R - from_pole;
+        const double section = std::sqrt(at_point.section * from_pole * (R + along));
+        const Vec3 point = (end.distance - along) * end.direction + across.at(section, at_point.angle);
+        double spheres = 1.0;
+        for (const Near& near : reaching) spheres += (point - near.vector).squaredNorm() < square(radius_[at(near.row)]);
         triple.add(0.5 * pi * square(height) * (R + along) * (1.0 - 2.0 / std::max(2.0, spheres)));
     }
     return {volume - triple.value(), triple.variance()};
@@ -184,15 +189,17 @@ UnionVolume::Part UnionVolume::ring(std::size_t row, std::size_t index) const {
     const double width = half.end - half.begin;
     if (!(width > 0.0)) return {};
     const double R2 = square(radius_[row]), volume = pi * square(width) * (half.end + 2.0 * half.begin) / 3.0;
+    std::vector<Near> reaching;
+    find_reaching(row, 0.5 * (half.begin + half.end) * half.direction, std::sqrt(0.25 * square(width) + half.radius2), reaching);
     const Across across(half.direction);
     Mean lost;
     for (std::size_t k = 0; k < points_; ++k) {
-        const Sample at = sample(index * points_ + k);
-        const double along = half.begin + width * std::sqrt(at.depth);
+        const Sample at_point = sample(index * points_ + k);
+        const double along = half.begin + width * std::sqrt(at_point.depth);
         const double sphere2 = R2 - along * along;
-        const double section = std::sqrt(sphere2 + at.section * (half.radius2 - sphere2));
-        const Vec3 point = along * half.direction + across.at(section, at.angle);
-        lost.add(0.5 * pi * square(width) * (along + half.begin) * (1.0 - share_of_ring(row, point)));
+        const double section = std::sqrt(sphere2 + at_point.section * (half.radius2 - sphere2));
+        const Vec3 point = along * half.direction + across.at(section, at_point.angle);
+        lost.add(0.5 * pi * square(width) * (along + half.begin) * (1.0 - share_of_ring(row, reaching, point)));
     }
     return {volume - lost.value(), lost.variance()};
 }

@@ -55,8 +55,8 @@ class UnionVolume {
     };
 
     void find_near(std::span<const double> reach);
-    std::size_t spheres_at(std::size_t row, const Vec3& point) const;
-    double share_of_ring(std::size_t row, const Vec3& point) const;
+    void find_reaching(std::size_t row, const Vec3& centre, double size, std::vector<Near>& reaching) const;
+    double share_of_ring(std::size_t row, std::span<const Near> reaching, const Vec3& point) const;
     Part lens(std::size_t row, std::size_t end) const;
     Part ring(std::size_t row, std::size_t end) const;
     template <typename OfEnd>
