@@ -48,12 +48,12 @@ def run(*command):
     return text, time.perf_counter() - start, usage.ru_maxrss * 1024
 
 
-def make_bar(folder, particles, seed=1, aspect=ASPECT, packing="--density 0.58"):
+def make_bar(folder, particles, seed=1, aspect=ASPECT, packing="--density 0.58", bonding=""):
     """A bar pressed to its density, with bonds: its file."""
     green, bar = (os.path.join(folder, f"{name}.kiln") for name in ("green", f"bar-{particles}-{seed}-{aspect}"))
     run("sinter", "green", "-q", "-n", particles, "--diameter", "100nm", *packing.split(), "--compact-to", DENSITY,
         "--aspect", f"{aspect}:1:1", "--seed", seed, "-o", green)
-    run("bondify", "-q", green, "-o", bar)
+    run("bondify", "-q", *bonding.split(), green, "-o", bar)
     return bar
 
 
@@ -138,7 +138,7 @@ def thickness(folder, given):
     rows = []
     for particles in (int(each) for each in given.sizes.split(",")):
         for seed in (int(each) for each in given.seeds.split(",")):
-            bar = make_bar(folder, particles, seed)
+            bar = make_bar(folder, particles, seed, bonding=given.bonding)
             cell = json.loads(run("analyze", "elastic", "--tolerance", 1e-6, bar)[0])["young_modulus"]
             test, seconds, _ = bend(bar)
             beam, near = (elastic_modulus(test, kind) / cell for kind in (False, True))
@@ -234,6 +234,7 @@ def main():
     parser.add_argument("--largest", type=int, default=SIZES[-1], help="bar of the case size, particles; the largest takes 10 GB")
     parser.add_argument("--sizes", default="2000,8000,30000,60000", help="particles of the bars of the case thickness")
     parser.add_argument("--seeds", default="1,2", help="packings of each of those sizes")
+    parser.add_argument("--bonding", default="", help="options of bondify in the case thickness, as in '--bonding=--method=necks'")
     given = parser.parse_args()
     if unknown := set(given.cases) - set(CASES):
         parser.error(f"no case {', '.join(sorted(unknown))}; there are {', '.join(CASES)}")
