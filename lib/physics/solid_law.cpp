@@ -13,7 +13,9 @@ using std::numbers::pi;
 
 constexpr double translation_power = 9.0 / 4.0;  // of 1 - x, on punches that shift
 constexpr double rotation_power = 5.0 / 4.0;     // on punches that turn
-constexpr double normal_part = 0.54;             // of the sections of a sphere that its necks pull at
+constexpr double cylinder_part = 0.7;            // of the compliance of a neck's cylinder
+constexpr double stretching_part = 0.54;         // of that of a sphere's sections, pulled at
+constexpr double turning_part = 0.7;             // of the same, turned
 constexpr double coverage_power = 1.0 / 4.0;
 
 double square(double value) { return value * value; }
@@ -31,8 +33,9 @@ BondStiffness solid_stiffness(double young_modulus, double shear_modulus, const 
     const double a = std::min(geometry.radius, smaller);
     const double L = std::max(geometry.length, bond_length_floor * square(a) / smaller);  // early necks are far shorter than wide
     const double A = pi * square(a), I = A * square(a) / 4.0;
-    double normal = L / (E * A), shear = L / (G * A) + L * square(L) / (12.0 * E * I);
-    double torsion = L / (2.0 * G * I), bending = L / (E * I);
+    const double C = cylinder_part;
+    double normal = C * L / (E * A), shear = C * (L / (G * A) + L * square(L) / (12.0 * E * I));
+    double torsion = C * L / (2.0 * G * I), bending = C * L / (E * I);
 
     const double P_n = (1.0 - nu * nu) / (2.0 * E * a), P_t = (2.0 - nu) * (1.0 + nu) / (4.0 * E * a);
     const double P_q = 3.0 * (1.0 + nu) / (8.0 * E * a * square(a)), P_b = 3.0 * (1.0 - nu * nu) / (4.0 * E * a * square(a));
@@ -41,10 +44,10 @@ BondStiffness solid_stiffness(double young_modulus, double shear_modulus, const 
         const double shifting = std::pow(open, translation_power), turning = std::pow(open, rotation_power);
         const double W = std::pow(std::max(1.0, coverage), coverage_power);
         const BondCompliance sphere = sphere_compliance(R, a, L / 2.0);
-        normal += P_n * shifting + normal_part * W * sphere.stretching / E;
+        normal += P_n * shifting + stretching_part * W * sphere.stretching / E;
         shear += P_t * shifting + W * (2.0 * (1.0 + nu) * sphere.stretching + sphere.transverse) / E;
-        torsion += P_q * turning + W * (1.0 + nu) * sphere.bending / E;
-        bending += P_b * turning + W * sphere.bending / E;
+        torsion += P_q * turning + turning_part * W * (1.0 + nu) * sphere.bending / E;
+        bending += P_b * turning + turning_part * W * sphere.bending / E;
     };
     add_side(geometry.sphere_radius_1, geometry.coverage_1);
     add_side(geometry.sphere_radius_2, geometry.coverage_2);
