@@ -131,8 +131,8 @@ void UnionVolume::find_near(std::span<const double> reach) {
     });
 }
 
-/// Of the particles near one, those whose sphere or necks may reach into a ball about a place relative to it: few, also where one has
-/// thousands of neighbours.
+/// Of the particles near one, those whose sphere or necks may reach into a ball about a place relative to it: few, also where one
+/// has thousands of neighbours.
 void UnionVolume::find_reaching(std::size_t row, const Vec3& centre, double size, std::vector<Near>& reaching) const {
     reaching.clear();
     for (const Near& near : near_.of(row))
