@@ -12,7 +12,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double least_constriction = 1e-3;  // of a side's resistance, so that none is without any
-constexpr double bulk_factor = 0.96;
+constexpr double bulk_factor = 0.94;
 constexpr double alignment_power = 3.0 / 4.0;
 
 }  // namespace

@@ -7,9 +7,9 @@
 //
 // In a packing the necks of a particle share its bulk. So the part of a side that even a uniform flow would need, l^2/(k V_h) with
 // its length l and its volume V_h in the chain, is taken out, and the bulk of the particle of volume V takes its place:
-//   R_side = 1/(4 k a g) + L/(2 k pi a^2) - l^2/(k V_h) + 0.96 max(1, m)^(3/4) 2 l^2/(k V)
+//   R_side = 1/(4 k a g) + L/(2 k pi a^2) - l^2/(k V_h) + 0.94 max(1, m)^(3/4) 2 l^2/(k V)
 //   m = n.M.n/2,  M = sum of n n^T over the directions n of the particle's necks
-// m is 1 in a chain and in a simple cubic lattice, 4/3 in BCC, 2 in FCC; a uniform field in the particle would have m itself. 0.96
+// m is 1 in a chain and in a simple cubic lattice, 4/3 in BCC, 2 in FCC; a uniform field in the particle would have m itself. 0.94
 // and 3/4 are fitted to voxel solutions of packings and cubic lattices; docs/mechanics.md has the errors.
 #pragma once
 
