@@ -35,22 +35,22 @@ TEST_CASE("solid: early necks are two rigid punches on half-spaces, in all four 
     CHECK(k.bending == relative(2.0 * E * a * a * a / (3.0 * (1.0 - nu * nu)), 2e-3));
 }
 
-TEST_CASE("solid: a neck as wide as its spheres is 0.7 of a cylinder, and a wider one counts as that") {
+TEST_CASE("solid: a neck as wide as its spheres is 0.65 of a cylinder, and a wider one counts as that") {
     const double L = 0.4 * R, A = pi * R * R, I = A * R * R / 4.0;
     for (const double radius : {R, 1.3 * R}) {
         const BondStiffness k = solid_stiffness(E, G, {R, R, L, radius, L, 1.0, 1.0});
-        CHECK(k.normal == relative(E * A / (0.7 * L), 1e-12));
-        CHECK(k.shear == relative(1.0 / (0.7 * (L / (G * A) + L * L * L / (12.0 * E * I))), 1e-12));
-        CHECK(k.torsion == relative(2.0 * G * I / (0.7 * L), 1e-12));
-        CHECK(k.bending == relative(E * I / (0.7 * L), 1e-12));
+        CHECK(k.normal == relative(E * A / (0.65 * L), 1e-12));
+        CHECK(k.shear == relative(1.0 / (0.65 * (L / (G * A) + L * L * L / (12.0 * E * I))), 1e-12));
+        CHECK(k.torsion == relative(2.0 * G * I / (0.65 * L), 1e-12));
+        CHECK(k.bending == relative(E * I / (0.65 * L), 1e-12));
     }
 }
 
 TEST_CASE("solid: half-way it is the sum of its parts, with sections integrated one by one") {
     const double R1 = 50e-9, R2 = 80e-9, a = 30e-9, L = 7e-9, A = pi * a * a, I = A * a * a / 4.0, O1 = 0.7, O2 = 5.0;
-    double normal = 0.7 * L / (E * A), shear = 0.7 * (L / (G * A) + L * L * L / (12.0 * E * I));
-    double torsion = 0.7 * L / (2.0 * G * I), bending = 0.7 * L / (E * I);
-    for (const auto& [R_i, W] : {std::pair{R1, 1.0}, std::pair{R2, std::pow(O2, 0.25)}}) {
+    double normal = 0.65 * L / (E * A), shear = 0.65 * (L / (G * A) + L * L * L / (12.0 * E * I));
+    double torsion = 0.65 * L / (2.0 * G * I), bending = 0.65 * L / (E * I);
+    for (const auto& [R_i, W] : {std::pair{R1, 1.0}, std::pair{R2, std::pow(O2, 0.35)}}) {
         const double s = std::sqrt(R_i * R_i - a * a), open = 1.0 - a / R_i;
         const int steps = 200000;
         double stretch = 0.0, bend = 0.0, transverse = 0.0;
@@ -61,10 +61,10 @@ TEST_CASE("solid: half-way it is the sum of its parts, with sections integrated 
             bend += s / steps / inertia;
             transverse += s / steps * lever * lever / inertia;
         }
-        normal += (1.0 - nu * nu) / (2.0 * E * a) * std::pow(open, 2.25) + 0.54 * W * stretch / E;
+        normal += (1.0 - nu * nu) / (2.0 * E * a) * std::pow(open, 2.25) + 0.6 * W * stretch / E;
         shear += (2.0 - nu) * (1.0 + nu) / (4.0 * E * a) * std::pow(open, 2.25) + W * (stretch / G + transverse / E);
-        torsion += 3.0 * (1.0 + nu) / (8.0 * E * a * a * a) * std::pow(open, 1.25) + 0.7 * W * bend / (2.0 * G);
-        bending += 3.0 * (1.0 - nu * nu) / (4.0 * E * a * a * a) * std::pow(open, 1.25) + 0.7 * W * bend / E;
+        torsion += 3.0 * (1.0 + nu) / (8.0 * E * a * a * a) * std::pow(open, 1.25) + 0.6 * W * bend / (2.0 * G);
+        bending += 3.0 * (1.0 - nu * nu) / (4.0 * E * a * a * a) * std::pow(open, 1.25) + 0.6 * W * bend / E;
     }
     const BondStiffness k = solid_stiffness(E, G, {R1, R2, 110e-9, a, L, O1, O2});
     CHECK(k.normal == relative(1.0 / normal, 1e-9));
@@ -78,7 +78,7 @@ TEST_CASE("solid: stiffer than finite elements of a chain of truncated spheres, 
         const double f = (1.0 + x * (0.554 + x * (0.265 - 0.294 * x))) / std::sqrt(1.0 - x * x);
         const double ratio = chain(x).normal / (E * x * R * f / (1.0 - nu * nu));
         CHECK(ratio > 1.0);
-        CHECK(ratio < 1.0 / 0.54);
+        CHECK(ratio < 1.0 / 0.6);
     }
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("solid: what necks cover beyond the whole surface softens, and nothing
     for (std::size_t k = 0; k < alone.size(); ++k) {
         CHECK(half[k] == alone[k]);
         CHECK(crowded[k] < alone[k]);
-        CHECK(crowded[k] > alone[k] / std::pow(2.0, 0.25));
+        CHECK(crowded[k] > alone[k] / std::pow(2.0, 0.35));
     }
     CHECK(cap_share(R, R) == relative(0.5, 1e-15));
     CHECK(cap_share(R, 1.2 * R) == relative(0.5, 1e-15));
