@@ -126,6 +126,7 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_fraction : first_order_fraction),
                                 .second_tolerance = closely,
+                                .balance_first = !settings_.second_order,
                                 .stop = settings_.stop};
     Problem problem{diffusion, clusters, settings, std::nullopt};
     problem.take(body_, candidates_);

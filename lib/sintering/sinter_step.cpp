@@ -21,7 +21,7 @@ constexpr double min_tangent = 0.1;        // of the tangent at a pair's own end
 constexpr double max_linear = 0.1;         // error of the linear solves, loosest and tightest
 constexpr double min_linear = 1e-3;
 constexpr int max_factorisations = 2;      // in one minimisation; later the tangents hardly change
-constexpr double linear_fraction = 0.5;    // of the tolerance, that is left to linear solves
+constexpr double linear_fraction = 0.6;    // of the tolerance, that is left to linear solves
 constexpr double imbalance_factor = 30.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
 constexpr double min_single = 1e-3;        // a tenth of it is typical; within these bounds
 constexpr double max_single = 0.5;
@@ -234,7 +234,7 @@ double SinterStep::line_search(double slope, Motion& motion) {
     return length;
 }
 
-bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
+bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepReport& report) {
     const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
     double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
     forces(motion, true);
@@ -269,6 +269,7 @@ bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
             for (double& component : unbalanced_.displacement) component = -component;
         }
         if (now >= tolerance) continue;
+        if (!balance) return true;
         report.imbalance = imbalance(motion);
         if (report.imbalance <= balanced) return true;
         if (sufficient == 0.0) return false;  // nothing that is left moves anything
@@ -277,15 +278,15 @@ bool SinterStep::newton(double tolerance, Motion& motion, StepReport& report) {
     return false;
 }
 
-bool SinterStep::minimise(double tolerance, Motion& motion, StepReport& report) {
-    bool converged = newton(tolerance, motion, report);
+bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepReport& report) {
+    bool converged = newton(tolerance, balance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
             [&](std::size_t row) { return limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == max_limit_passes) return false;
-        converged = newton(tolerance, motion, report);
+        converged = newton(tolerance, balance, motion, report);
     }
     return converged;
 }
@@ -312,7 +313,7 @@ void SinterStep::remove_drift(Motion& motion) const {
 StepReport SinterStep::first_order(Motion& motion) {
     StepReport report;
     start_geometry();
-    report.converged = minimise(settings_.first_tolerance, motion, report);
+    report.converged = minimise(settings_.first_tolerance, settings_.balance_first, motion, report);
     remove_drift(motion);
     report.stress = strain_force_ / box_.volume();
     return report;
@@ -322,7 +323,7 @@ StepReport SinterStep::second_order(const Motion& first, Motion& motion) {
     StepReport report;
     const Vec3 stretch = Vec3::Ones() + 0.5 * first.strain;
     midpoint_geometry(first);
-    report.converged = minimise(settings_.second_tolerance, motion, report);
+    report.converged = minimise(settings_.second_tolerance, true, motion, report);
     remove_drift(motion);
     report.stress = strain_force_.cwiseProduct(stretch) / (box_.volume() * stretch.prod());
     return report;

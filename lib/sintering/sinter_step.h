@@ -38,6 +38,7 @@ struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
+    bool balance_first = true;  // judge the motion of first order particle by particle; not needed where it only predicts
     StopRequest stop;                                 // asked between iterations; the step then throws Interrupted
 };
 
@@ -82,8 +83,9 @@ class SinterStep {
     void midpoint_geometry(const Motion& motion);
     void take_geometry();
     void start_limits();
-    bool minimise(double tolerance, Motion& motion, StepReport& report);
-    bool newton(double tolerance, Motion& motion, StepReport& report);
+    /// balance: also the forces on each particle are to be in balance.
+    bool minimise(double tolerance, bool balance, Motion& motion, StepReport& report);
+    bool newton(double tolerance, bool balance, Motion& motion, StepReport& report);
     double line_search(double slope, Motion& motion);
     /// The forces that a motion leaves unbalanced, and the stiffness there.
     void forces(const Motion& motion, bool secant);
