@@ -28,11 +28,18 @@ LDFLAGS  := -fopenmp $(EXTRA)
 TOOLS        := sinter bondify bend analyze
 LIB_SOURCES  := $(wildcard lib/*/*.cpp)
 LIB_OBJECTS  := $(LIB_SOURCES:%.cpp=$(BUILD)/%.o)
-TOOL_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tools/*/*.cpp))
-UNIT_OBJECTS := $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tests/unit/*.cpp tests/physics/*.cpp))
+TOOL_OBJECTS := $(patsubst %,$(BUILD)/tools/%.o,$(TOOLS) common)
 BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
 BENCH_SCRIPTS := $(basename $(notdir $(wildcard bench/*.py)))
 PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
+
+# Piece "unit-2" of 4 is the second quarter of the files of tests/unit.
+UNIT_PIECES    := 4
+PHYSICS_PIECES := 3
+files_of_piece  = $(shell ls tests/$(1)/*.cpp | awk -v n=$$(ls tests/$(1)/*.cpp | wc -l) 'NR > ($(3) - 1) * n / $(2) && NR <= $(3) * n / $(2)')
+pieces          = $(foreach number,$(shell seq $(2)),$(1)-$(number))
+UNIT_OBJECTS   := $(BUILD)/tests/main.o \
+                  $(patsubst %,$(BUILD)/tests/%.o,$(call pieces,unit,$(UNIT_PIECES)) $(call pieces,physics,$(PHYSICS_PIECES)))
 
 .PHONY: all demo test unit-test cli-test bench man clean help packages
 .SECONDARY:
@@ -81,8 +88,22 @@ $(BUILD)/libkiln.a: $(LIB_OBJECTS)
 	@rm -f $@
 	ar rcs $@ $^
 
+# Programs and tests are compiled in pieces, several files of a directory after each other: most of the time goes into templates of
+# options, JSON and matrices, which each file would instantiate again. 1: name of the piece, 2: its files
+define piece_rule
+$(BUILD)/$(1).cpp: FORCE
+	@mkdir -p $$(@D)
+	@cmp -s $$@ <(printf '#include "%s"\n' $(2)) || printf '#include "%s"\n' $(2) > $$@
+
+$(BUILD)/$(1).o: $(BUILD)/$(1).cpp $(BUILD)/flags | $(BUILD)/packages-present
+	$$(CXX) $$(CXXFLAGS) $$(PRECOMPILED) -MMD -MP -c $$< -o $$@
+endef
+$(foreach tool,$(TOOLS) common,$(eval $(call piece_rule,tools/$(tool),$(wildcard tools/$(tool)/*.cpp))))
+$(foreach n,$(shell seq $(UNIT_PIECES)),$(eval $(call piece_rule,tests/unit-$(n),$(call files_of_piece,unit,$(UNIT_PIECES),$(n)))))
+$(foreach n,$(shell seq $(PHYSICS_PIECES)),$(eval $(call piece_rule,tests/physics-$(n),$(call files_of_piece,physics,$(PHYSICS_PIECES),$(n)))))
+
 define tool_rule
-$(BUILD)/bin/$(1): $$(patsubst %.cpp,$(BUILD)/%.o,$$(wildcard tools/$(1)/*.cpp tools/common/*.cpp)) $(BUILD)/libkiln.a
+$(BUILD)/bin/$(1): $(BUILD)/tools/$(1).o $(BUILD)/tools/common.o $(BUILD)/libkiln.a
 	@mkdir -p $$(@D)
 	$(CXX) $$^ $(LDFLAGS) -o $$@
 endef
@@ -101,6 +122,7 @@ include demo.mk checks.mk tests/fuzz/fuzz.mk packaging/package.mk
 
 # Test cases run once, and programs only read, ask the library and write: quick to compile counts for more than quick to run.
 $(BUILD)/tests/%: OPTIMISE := -O1
+$(BUILD)/tests/%: WARNINGS := $(filter-out -Wshadow,$(WARNINGS))
 $(BUILD)/tools/%: OPTIMISE := -O1 -DNDEBUG
 
 # ---- tests --------------------------------------------------------------------------------------------------------------------

@@ -72,7 +72,7 @@ END
     compile() { g++ -std=c++20 -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror -Ilib -I. -isystem /usr/include/eigen3 "$@"; }
     compile -fsyntax-only tools/common/bond_model.cpp
     compile -fsyntax-only -x c++ - <<<'#include "physics/sinter_contact.h"'
-    compile -o law lib/physics/bond_law.cpp lib/physics/solid_law.cpp tests/unit/stepped_law_test.cpp tests/unit/main.cpp
+    compile -o law lib/physics/bond_law.cpp lib/physics/solid_law.cpp tests/unit/stepped_law_test.cpp tests/main.cpp
     run -0 ./law
     assert_output --partial "6 passed"
 }

@@ -13,10 +13,9 @@ using namespace sintering_cases;
 
 namespace {
 
-constexpr double radius = 50e-9;
 
 /// Face-centred cubic cell of touching spheres, their overlap h = 2 R s.
-State face_centred(double s) {
+State face_centred_cell(double s) {
     const double cell = 2.0 * radius * (1.0 - s) / std::sqrt(0.5);
     std::vector<Vec3> positions;
     for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)})
@@ -60,7 +59,7 @@ TEST_CASE("stress: minus the pressure along a loaded axis, tension along a fixed
     sintering::SinteringSettings wanted = settings();
     wanted.pressure = Vec3(0.0, 0.0, 5e6);
     wanted.fixed = {true, false, false};
-    sintering::ImplicitSintering sintering(face_centred(0.03), wanted);
+    sintering::ImplicitSintering sintering(face_centred_cell(0.03), wanted);
     const sintering::StepRecord record = sintering.advance(1.0, endless);
     CHECK(deviation(record.stress[2], -5e6) < 1e-5);
     CHECK(std::abs(record.stress[1]) < 1e2);
@@ -70,7 +69,7 @@ TEST_CASE("stress: minus the pressure along a loaded axis, tension along a fixed
                              sintering::SinteringSettings both = settings();
                              both.pressure = Vec3(1e6, 0.0, 0.0);
                              both.fixed = {true, false, false};
-                             return sintering::ImplicitSintering(face_centred(0.03), both);
+                             return sintering::ImplicitSintering(face_centred_cell(0.03), both);
                          }()),
                          doctest::Contains("pressure"), Error);
 }
@@ -80,7 +79,7 @@ TEST_CASE("a face-centred film shrinks across its plane by C12 and C11 of its vi
     const auto rate = [&](bool film) {
         sintering::SinteringSettings wanted = settings();
         wanted.fixed = {film, film, false};
-        sintering::ImplicitSintering sintering(face_centred(s), wanted);
+        sintering::ImplicitSintering sintering(face_centred_cell(s), wanted);
         const double time = 1e-4 * std::pow(overlap, 3) * 0.5 * radius / (3.375 * diffusion() * surface_energy());
         return sintering.advance(time, endless).strain[2] / time;
     };
@@ -94,7 +93,7 @@ TEST_CASE("a face-centred film shrinks across its plane by C12 and C11 of its vi
 
 TEST_CASE("sintering stress and viscosities of a face-centred lattice are those of affine motion") {
     const double s = 0.04, overlap = 2.0 * radius * s;
-    State state = face_centred(s);
+    State state = face_centred_cell(s);
     const double density = relative_density(state), spacing = 2.0 * radius - overlap;
     const sintering::ViscousResponse response = sintering::viscous_response(state, {}, temperature);
     const physics::ContactConstants constants;

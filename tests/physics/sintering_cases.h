@@ -22,6 +22,7 @@ using namespace kiln;
 using test::deviation;
 
 inline constexpr double temperature = 1473.15;  // K
+inline constexpr double radius = 50e-9;         // of a particle, m
 inline constexpr double endless = std::numeric_limits<double>::infinity();
 
 inline double diffusion() { return physics::diffusion_parameter_of(physics::builtin_material("alumina"), temperature); }
@@ -76,7 +77,7 @@ inline State random_packing(std::int64_t count, double density, double scale, st
     state.materials = {physics::builtin_material("alumina")};
     state.box.lengths *= scale;
     for (Vec3& position : state.particles.position) position *= scale;
-    for (double& radius : state.particles.radius) radius *= scale;
+    for (double& each : state.particles.radius) each *= scale;
     return state;
 }
 

@@ -10,7 +10,6 @@ using namespace sintering_cases;
 
 namespace {
 
-constexpr double radius = 50e-9;
 
 Material inclusion() {
     Material material = physics::builtin_material("alumina");

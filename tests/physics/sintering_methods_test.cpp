@@ -12,7 +12,6 @@ using namespace sintering_cases;
 
 namespace {
 
-constexpr double radius = 50e-9;
 
 State explicitly_sintered(State state, double time, double mass_scaling) {
     sintering::SinteringSettings wanted = settings();

@@ -157,14 +157,15 @@ TEST_CASE("voxel: one medium that fills the box is that medium") {
         CHECK(found.converged);
     }
     const auto full = image_of({4, 3, 6}, [](auto...) { return 1; });
-    CHECK(deviation_of(homogenise(full, std::vector{Conductor{30.0}}, usual).tensor, 30.0 * Eigen::Matrix3d::Identity()) < 1e-12);
+    CHECK(deviation_of(homogenise(full, std::vector{voxel::Conductor{30.0}}, usual).tensor, 30.0 * Eigen::Matrix3d::Identity()) <
+          1e-12);
 }
 
 TEST_CASE("voxel: a laminate across each axis is the closed form, whatever the contrast and the edges of the voxels") {
     for (const double contrast : {1e-6, 1e-3, 0.1, 0.7}) {
         CAPTURE(contrast);
         const std::vector<Solid> media{solid(400e9, 0.23), solid(400e9 * contrast, 0.1)};
-        const std::vector<Conductor> conductors{{30.0}, {30.0 * contrast}};
+        const std::vector<voxel::Conductor> conductors{{30.0}, {30.0 * contrast}};
         Eigen::MatrixXd expected = laminate(0.4, media[0], media[1]);
         Eigen::MatrixXd conducting = Eigen::MatrixXd::Zero(3, 3);
         conducting.diagonal() << 30.0 / (0.4 + 0.6 / contrast), 30.0 * (0.4 + 0.6 * contrast), 30.0 * (0.4 + 0.6 * contrast);
@@ -248,7 +249,7 @@ TEST_CASE("voxel: the same tensor with axes moved on, for a larger cell of the s
     CHECK(deviation_of(homogenise(mirrored, media, tight).tensor, mirror * found.tensor * mirror) < 1e-7);
 
     // Of conductivity too, and of an image in other units.
-    const std::vector<Conductor> conductors{{30.0}, {2.0}};
+    const std::vector<voxel::Conductor> conductors{{30.0}, {2.0}};
     const Homogenised flow = homogenise(image, conductors, tight);
     CHECK(deviation_of(homogenise(turned, conductors, tight).tensor, moved_on(flow.tensor)) < 1e-7);
     voxel::Image small = image;
@@ -297,7 +298,7 @@ TEST_CASE("voxel: what has no tensor is refused, a request to stop is heard") {
     const auto layers = image_of({4, 4, 4}, [](std::size_t, std::size_t y, std::size_t) { return y < 2 ? 1 : 0; });
     CHECK_THROWS_WITH_AS(of_image(layers, std::vector{solid(1.0, 0.2)}, usual),
                          doctest::Contains("does not reach round the box along y"), Error);
-    CHECK_THROWS_WITH_AS(homogenise(image_of({2, 2, 2}, [](auto...) { return 2; }), std::vector{Conductor{1.0}}, usual),
+    CHECK_THROWS_WITH_AS(homogenise(image_of({2, 2, 2}, [](auto...) { return 2; }), std::vector{voxel::Conductor{1.0}}, usual),
                          doctest::Contains("no material"), Error);
     State state = lattice(Lattice::simple, 0.5);
     const auto grids = grids_of(state, std::vector{8.0, 5.0});

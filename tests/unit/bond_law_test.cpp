@@ -15,7 +15,7 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr double E = 400e9, G = 160e9;
+constexpr double E_bond = 400e9, G_bond = 160e9;
 constexpr BondGeometry bond{50e-9, 40e-9, 92e-9, 25e-9, 17e-9};
 constexpr BondLaw laws[] = {BondLaw::series, BondLaw::neck, BondLaw::centre};
 constexpr BondShear shears[] = {BondShear::section, BondShear::timoshenko};
@@ -41,8 +41,8 @@ void check_equal(const BondStiffness& a, const BondStiffness& b, double toleranc
 TEST_CASE("neck and centre are E A/L, G A/L, G J/L and E I/L of their lengths") {
     const double A = pi * 25e-9 * 25e-9, I = A * 25e-9 * 25e-9 / 4.0;
     for (const auto& [law, L] : {std::pair{BondLaw::neck, 17e-9}, std::pair{BondLaw::centre, 92e-9}}) {
-        const BondStiffness k = bond_stiffness(law, BondShear::section, E, G, bond);
-        check_equal(k, {E * A / L, G * A / L, 2.0 * G * I / L, E * I / L}, 1e-13);
+        const BondStiffness k = bond_stiffness(law, BondShear::section, E_bond, G_bond, bond);
+        check_equal(k, {E_bond * A / L, G_bond * A / L, 2.0 * G_bond * I / L, E_bond * I / L}, 1e-13);
     }
 }
 
@@ -58,22 +58,24 @@ TEST_CASE("compliance of a truncated sphere is the integral over its sections") 
 }
 
 TEST_CASE("series is the neck and both spheres one after the other") {
-    const BondStiffness k = bond_stiffness(BondLaw::series, BondShear::section, E, G, bond);
+    const BondStiffness k = bond_stiffness(BondLaw::series, BondShear::section, E_bond, G_bond, bond);
     double f_n = 17e-9 / (pi * 25e-9 * 25e-9), f_b = 4.0 * f_n / (25e-9 * 25e-9);
     for (const double R : {50e-9, 40e-9}) {
         const double s = std::sqrt(R * R - 25e-9 * 25e-9);
         f_n += std::atanh(s / R) / (pi * R);
         f_b += 4.0 / pi * (s / (2.0 * R * R * (R * R - s * s)) + std::atanh(s / R) / (2.0 * R * R * R));
     }
-    check_equal(k, {E / f_n, G / f_n, 2.0 * G / f_b, E / f_b}, 1e-12);
+    check_equal(k, {E_bond / f_n, G_bond / f_n, 2.0 * G_bond / f_b, E_bond / f_b}, 1e-12);
 }
 
 TEST_CASE("a bond as thick as its spheres leaves nothing of them, and thicker ones count as that") {
     for (const BondShear shear : shears) {
         const BondGeometry full{40e-9, 40e-9, 90e-9, 40e-9, 90e-9}, thicker{40e-9, 40e-9, 90e-9, 47e-9, 90e-9};
         for (const BondLaw law : laws) {
-            check_equal(bond_stiffness(law, shear, E, G, full), bond_stiffness(BondLaw::centre, shear, E, G, full), 1e-12);
-            check_equal(bond_stiffness(law, shear, E, G, thicker), bond_stiffness(law, shear, E, G, full), 1e-12);
+            check_equal(bond_stiffness(law, shear, E_bond, G_bond, full),
+                        bond_stiffness(BondLaw::centre, shear, E_bond, G_bond, full), 1e-12);
+            check_equal(bond_stiffness(law, shear, E_bond, G_bond, thicker), bond_stiffness(law, shear, E_bond, G_bond, full),
+                        1e-12);
         }
     }
 }
@@ -81,10 +83,10 @@ TEST_CASE("a bond as thick as its spheres leaves nothing of them, and thicker on
 TEST_CASE("thin bonds: stiffness falls to zero, as a cylinder's where the bond has a length") {
     for (const BondLaw law : laws) {
         for (const BondShear shear : shears) {
-            const BondStiffness none = bond_stiffness(law, shear, E, G, {40e-9, 40e-9, 90e-9, 0.0, 10e-9});
+            const BondStiffness none = bond_stiffness(law, shear, E_bond, G_bond, {40e-9, 40e-9, 90e-9, 0.0, 10e-9});
             CHECK(none.normal + none.shear + none.torsion + none.bending == 0.0);
-            const BondStiffness thin = bond_stiffness(law, shear, E, G, {40e-9, 40e-9, 90e-9, 40e-15, 10e-9});
-            const BondStiffness thinner = bond_stiffness(law, shear, E, G, {40e-9, 40e-9, 90e-9, 4e-15, 10e-9});
+            const BondStiffness thin = bond_stiffness(law, shear, E_bond, G_bond, {40e-9, 40e-9, 90e-9, 40e-15, 10e-9});
+            const BondStiffness thinner = bond_stiffness(law, shear, E_bond, G_bond, {40e-9, 40e-9, 90e-9, 4e-15, 10e-9});
             CHECK(thin.normal / thinner.normal == relative(100.0, 1e-3));
             CHECK(thin.bending / thinner.bending == relative(1e4, 1e-3));
             CHECK(thin.torsion / thinner.torsion == relative(1e4, 1e-3));
@@ -98,13 +100,13 @@ TEST_CASE("a bond without length counts as a thousandth of the smaller radius lo
     const BondGeometry none{40e-9, 50e-9, 70e-9, 30e-9, 0.0}, least{40e-9, 50e-9, 70e-9, 30e-9, 40e-12};
     for (const BondShear shear : shears) {
         for (const BondLaw law : {BondLaw::series, BondLaw::neck}) {
-            const BondStiffness k = bond_stiffness(law, shear, E, G, none);
+            const BondStiffness k = bond_stiffness(law, shear, E_bond, G_bond, none);
             CHECK(std::isfinite(k.normal));
             CHECK(k.shear > 0.0);
-            check_equal(k, bond_stiffness(law, shear, E, G, least), 1e-12);
+            check_equal(k, bond_stiffness(law, shear, E_bond, G_bond, least), 1e-12);
         }
-        const BondStiffness k = bond_stiffness(BondLaw::centre, shear, E, G, none);  // does not ask for the length
-        check_equal(k, bond_stiffness(BondLaw::centre, shear, E, G, {40e-9, 50e-9, 70e-9, 30e-9, 60e-9}), 1e-12);
+        const BondStiffness k = bond_stiffness(BondLaw::centre, shear, E_bond, G_bond, none);  // does not ask for the length
+        check_equal(k, bond_stiffness(BondLaw::centre, shear, E_bond, G_bond, {40e-9, 50e-9, 70e-9, 30e-9, 60e-9}), 1e-12);
     }
 }
 
@@ -114,9 +116,9 @@ TEST_CASE("lengths times lambda: translational springs grow by lambda, rotationa
                              bond.radius * lambda, bond.length * lambda};
     for (const BondLaw law : laws) {
         for (const BondShear shear : shears) {
-            const BondStiffness k = bond_stiffness(law, shear, E, G, bond);
+            const BondStiffness k = bond_stiffness(law, shear, E_bond, G_bond, bond);
             const double cube = lambda * lambda * lambda;
-            check_equal(bond_stiffness(law, shear, E, G, large),
+            check_equal(bond_stiffness(law, shear, E_bond, G_bond, large),
                         {k.normal * lambda, k.shear * lambda, k.torsion * cube, k.bending * cube}, 1e-12);
         }
     }
@@ -124,11 +126,12 @@ TEST_CASE("lengths times lambda: translational springs grow by lambda, rotationa
 
 TEST_CASE("Timoshenko's beam: 12 E I/L3 for a slender cylinder, Cowper's shear for a short one") {
     const double L = 1e-6, r = 1e-9, A = pi * r * r, I = A * r * r / 4.0;
-    const BondStiffness slender = bond_stiffness(BondLaw::centre, BondShear::timoshenko, E, G, {1e-6, 1e-6, L, r, L});
-    CHECK(slender.shear == relative(12.0 * E * I / (L * L * L), 1e-5));
-    const double nu = E / (2.0 * G) - 1.0, kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
-    const BondStiffness stout = bond_stiffness(BondLaw::centre, BondShear::timoshenko, E, G, {1e-6, 1e-6, 1e-9, 1e-6, 1e-9});
-    CHECK(stout.shear == relative(kappa * G * pi * 1e-12 / 1e-9, 1e-5));
+    const BondStiffness slender = bond_stiffness(BondLaw::centre, BondShear::timoshenko, E_bond, G_bond, {1e-6, 1e-6, L, r, L});
+    CHECK(slender.shear == relative(12.0 * E_bond * I / (L * L * L), 1e-5));
+    const double nu = E_bond / (2.0 * G_bond) - 1.0, kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
+    const BondStiffness stout =
+        bond_stiffness(BondLaw::centre, BondShear::timoshenko, E_bond, G_bond, {1e-6, 1e-6, 1e-9, 1e-6, 1e-9});
+    CHECK(stout.shear == relative(kappa * G_bond * pi * 1e-12 / 1e-9, 1e-5));
 }
 
 TEST_CASE("bond stress is force over section plus moment over section modulus, and pressed sections have none of their own") {
@@ -142,8 +145,8 @@ TEST_CASE("bond stress is force over section plus moment over section modulus, a
 }
 
 TEST_CASE("Hertz contact with a wall: force is the slope of the energy, stiffness that of the force, none without overlap") {
-    const double modulus = contact_modulus(E, 0.25), R = 50e-9, h = 1e-9, step = 1e-13;
-    CHECK(modulus == relative(E / 0.9375, 1e-14));
+    const double modulus = contact_modulus(E_bond, 0.25), R = 50e-9, h = 1e-9, step = 1e-13;
+    CHECK(modulus == relative(E_bond / 0.9375, 1e-14));
     const HertzContact here = hertz_contact(modulus, R, h);
     const HertzContact less = hertz_contact(modulus, R, h - step), more = hertz_contact(modulus, R, h + step);
     CHECK(here.force == relative(4.0 / 3.0 * modulus * std::sqrt(R) * std::pow(h, 1.5), 1e-14));

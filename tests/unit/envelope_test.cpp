@@ -11,10 +11,10 @@
 using namespace kiln;
 using kiln::analysis::envelope_volume;
 using kiln::test::relative;
+using std::numbers::pi;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 // Where the ball lies in a groove its centre is at a crease, which the grid meets to a part of its step: 1.5 % of these volumes.
 constexpr double in_grooves = 0.02;
 

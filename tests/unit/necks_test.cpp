@@ -246,7 +246,7 @@ TEST_CASE("necks: bondify keeps the particles and all their mass, and gives ever
     State state = make_packing(5, 5, 2.9);
     const State before = state;
     Options options;
-    options.method = Method::necks;
+    options.method = bonding::Method::necks;
     const Summary summary = bonding::bondify(state, options);
     CHECK(state.particles.radius == before.particles.radius);
     CHECK(relative_density(state) == relative_density(before));

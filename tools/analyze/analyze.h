@@ -3,6 +3,8 @@
 
 namespace kiln::analyze {
 
+constexpr double confidence = 0.95;  // of the intervals that are printed
+
 int info(int argc, char** argv);
 int density(int argc, char** argv);
 int bonds(int argc, char** argv);

@@ -16,7 +16,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* bonds_footer =
     "Keys of a result:\n"
     "  relative_density, particles, count, mean_diameter (m), mean_length (m)\n"
     "  bond_volume_fraction  of the solid; 0 for necks, whose solid is counted with the particles\n"
@@ -30,7 +30,7 @@ constexpr const char* footer =
     "  analyze bonds --table bonded.kiln\n"
     "  bondify sintered.kiln | analyze bonds --bins 50 | jq .histogram";
 
-const std::vector<Column> columns{{"relative_density", "relative density", ""}, {"particles", "particles", ""},
+const std::vector<Column> bonds_columns{{"relative_density", "relative density", ""}, {"particles", "particles", ""},
                                   {"count", "bonds", ""},                       {"mean_diameter", "mean diameter", "m"},
                                   {"mean_length", "mean length", "m"},          {"bond_volume_fraction", "bond fraction", ""}};
 
@@ -95,9 +95,9 @@ int bonds(int argc, char** argv) {
     std::size_t bins = 20;
     CLI::App app{"Counts and measures the bonds of every state.",
                  "analyze bonds"};
-    app.footer(footer);
+    app.footer(bonds_footer);
     cli::add_number(app, "--bins", bins, {1, 1000000}, "Number of bins of the histogram");
-    return report_each(app, argc, argv, columns, [&bins](io::Document document) {
+    return report_each(app, argc, argv, bonds_columns, [&bins](io::Document document) {
         return bonds_of(io::state_from(std::move(document)), bins);
     });
 }

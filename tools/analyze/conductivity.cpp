@@ -15,7 +15,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* conductivity_footer =
     "The conductivity may be that of heat or of anything else that flows by a gradient; the result is in proportion to it.\n\n"
     "Keys of a result:\n"
     "  model, relative_density, iterations, residual\n"
@@ -35,14 +35,14 @@ constexpr const char* footer =
     "  analyze select --density 0.79 sintered.kiln | bondify --method necks |\n"
     "      analyze conductivity --model voxel --voxels 4,6 --conductivity 30W/m/K";
 
-const std::vector<Column> network_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> conductivity_network_columns{{"relative_density", "relative density", ""},
                                           {"conductivity", "conductivity", "W/(m K)"},
                                           {"bound", "upper bound", "W/(m K)"},
                                           {"anisotropy", "anisotropy", ""},
                                           {"coordination_number", "coordination number", ""},
                                           {"iterations", "iterations", ""}};
 
-const std::vector<Column> voxel_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> conductivity_voxel_columns{{"relative_density", "relative density", ""},
                                         {"union_fraction", "union", ""},
                                         {"conductivity", "conductivity", "W/(m K)"},
                                         {"extrapolation_error", "+-", "W/(m K)"},
@@ -113,7 +113,7 @@ int conductivity(int argc, char** argv) {
     mechanics::Conductor conductor;
     CLI::App app{"Finds the conductivity of every state, a periodic cell under three gradients, or of an image.",
                  "analyze conductivity"};
-    app.footer(footer);
+    app.footer(conductivity_footer);
     add_table(app, table);
     options.add_to(app, "necks as conductors between particles, with the bulk that the necks of a particle share",
                    "Unbalanced flow over what drives it");
@@ -129,7 +129,7 @@ int conductivity(int argc, char** argv) {
     cli::parse(app, argc, argv, common);
     options.check(app, {"--boundary-resistance"}, {}, common);
 
-    Report report(common, table, options.model == Model::voxel ? voxel_columns : network_columns);
+    Report report(common, table, options.model == Model::voxel ? conductivity_voxel_columns : conductivity_network_columns);
     bool converged = true;
     const auto add = [&](Json result) {
         converged = converged && result["converged"].get<bool>();

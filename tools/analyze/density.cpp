@@ -16,7 +16,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* density_footer =
     "Keys of a result:\n"
     "  time (s), relative_density, particles\n"
     "  measure                   volume that the density refers to, see below\n"
@@ -45,7 +45,7 @@ constexpr const char* footer =
     "  sinter --temperature 1200C --every 10s --at-time 1min green.kiln | analyze density |\n"
     "      jq -r '[.time, .relative_density] | @tsv'";
 
-const std::vector<Column> columns{{"time", "time", "s"},
+const std::vector<Column> density_columns{{"time", "time", "s"},
                                   {"relative_density", "relative density", ""},
                                   {"measure", "measure", ""},
                                   {"particles", "particles", ""},
@@ -54,7 +54,7 @@ const std::vector<Column> columns{{"time", "time", "s"},
                                   {"largest_cluster_fraction", "largest cluster", ""},
                                   {"fabric_anisotropy", "anisotropy", ""}};
 
-struct Options {
+struct DensityOptions {
     analysis::Measure measure = analysis::Measure::automatic;
     double probe = 0.0;  // m; 0: the mean diameter
     std::size_t bins = 0;
@@ -108,7 +108,7 @@ void add_contacts(Json& result, const State& state, std::size_t bins) {
     if (bins > 0) result["overlap_histogram"] = histogram_json(analysis::histogram_of(overlaps, bins, 0.0));
 }
 
-Json density_of(const State& state, const Options& options) {
+Json density_of(const State& state, const DensityOptions& options) {
     const analysis::Density density = analysis::measured_density(state, options.measure, options.probe);
     Json result{{"format", "dem-density"},
                 {"version", io::format_version},
@@ -134,11 +134,11 @@ Json density_of(const State& state, const Options& options) {
 }  // namespace
 
 int density(int argc, char** argv) {
-    Options options;
+    DensityOptions options;
     CLI::App app{"Density, coordination number, overlaps, sizes, clusters and texture of every state.", "analyze density"};
-    app.footer(footer);
+    app.footer(density_footer);
     options.add_to(app);
-    return report_each(app, argc, argv, columns, [&](io::Document document) {
+    return report_each(app, argc, argv, density_columns, [&](io::Document document) {
         return density_of(io::state_from(std::move(document)), options);
     });
 }

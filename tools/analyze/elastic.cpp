@@ -17,7 +17,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* elastic_footer =
     "Keys of a result:\n"
     "  model, relative_density, iterations, residual\n"
     "  stiffness       6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear\n"
@@ -43,7 +43,7 @@ constexpr const char* footer =
     "  analyze select --density 0.79 sintered.kiln | analyze voxel --voxels 5 -o body.npy\n"
     "  analyze elastic --model voxel --image body.npy --young-modulus 400GPa --poisson-ratio 0.23";
 
-const std::vector<Column> network_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> elastic_network_columns{{"relative_density", "relative density", ""},
                                           {"young_modulus", "Young's modulus", "Pa"},
                                           {"poisson_ratio", "Poisson's ratio", ""},
                                           {"anisotropy", "anisotropy", ""},
@@ -51,7 +51,7 @@ const std::vector<Column> network_columns{{"relative_density", "relative density
                                           {"bond_law", "bond law", ""},
                                           {"iterations", "iterations", ""}};
 
-const std::vector<Column> voxel_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> elastic_voxel_columns{{"relative_density", "relative density", ""},
                                         {"union_fraction", "union", ""},
                                         {"young_modulus", "Young's modulus", "Pa"},
                                         {"extrapolation_error", "+-", "Pa"},
@@ -135,7 +135,7 @@ int elastic(int argc, char** argv) {
     VoxelOptions options;
     mechanics::BondModel model;
     CLI::App app{"Finds the elastic tensor of every state, a periodic cell under six strains, or of an image.", "analyze elastic"};
-    app.footer(footer);
+    app.footer(elastic_footer);
     add_table(app, table);
     options.add_to(app, "springs between the particles, by --bond-law", "Unbalanced force over load");
     cli::add_bond_model(app, model);
@@ -147,7 +147,7 @@ int elastic(int argc, char** argv) {
     options.check(app, {"--bond-law", "--bond-shear"}, {"--young-modulus", "--poisson-ratio"}, common);
     if (!options.image.empty() && !(young > 0.0)) throw CLI::ValidationError("--young-modulus", "is not greater than 0");
 
-    Report report(common, table, options.model == Model::voxel ? voxel_columns : network_columns);
+    Report report(common, table, options.model == Model::voxel ? elastic_voxel_columns : elastic_network_columns);
     bool converged = true;
     const auto add = [&](Json result) {
         converged = converged && result["converged"].get<bool>();

@@ -16,7 +16,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* fit_footer =
     "Reads dem-modulus documents (and dem-elastic ones) and tables FILE.csv, all of them for one fit; P = 1 - relative density is "
     "the porosity. A table has the columns relative_density (or porosity), young_modulus and, if there is one, standard_error, "
     "such as 'relative_density,young_modulus (GPa)'. Several laws give a document each, the best by AICc first.\n\n"
@@ -39,7 +39,6 @@ constexpr const char* examples =
     "  analyze fit --law power --data measured.csv moduli.json | jq .data.rms_deviation\n"
     "  analyze fit --law pabst measured.csv | jq '.[\"Pc\"]'";
 
-constexpr double confidence = 0.95;
 
 /// Errors of moduli smaller than this share of them are those of a computed straight line and say nothing about the points.
 constexpr double least_error = 1e-6;
@@ -183,7 +182,7 @@ std::vector<const physics::PorosityLaw*> laws_of(const std::string& names) {
     return wanted;
 }
 
-struct Options {
+struct FitOptions {
     std::vector<const physics::PorosityLaw*> wanted{&physics::porosity_laws().front()};
     Weights weights = Weights::automatic;
     std::string data;
@@ -200,7 +199,7 @@ std::string law_list() {
     return list + "\n";
 }
 
-void Options::add_to(CLI::App& app) {
+void FitOptions::add_to(CLI::App& app) {
     app.add_option_function<std::string>(
            "--law",
            [this](const std::string& names) {
@@ -223,7 +222,7 @@ void Options::add_to(CLI::App& app) {
 }
 
 /// Results of all wanted laws, the best first where there are several.
-std::vector<std::pair<const physics::PorosityLaw*, Json>> results_of(const Options& options, const Points& points, bool quiet) {
+std::vector<std::pair<const physics::PorosityLaw*, Json>> results_of(const FitOptions& options, const Points& points, bool quiet) {
     const bool by_errors = weighted(points, options.weights);
     std::vector<double> weight(points.error.size(), 1.0);
     if (by_errors) std::ranges::transform(points.error, weight.begin(), [](double error) { return 1.0 / (error * error); });
@@ -253,9 +252,9 @@ std::vector<std::pair<const physics::PorosityLaw*, Json>> results_of(const Optio
 
 int fit(int argc, char** argv) {
     cli::Common common;
-    Options options;
+    FitOptions options;
     CLI::App app{"Fits laws of Young's modulus against porosity by weighted least squares.", "analyze fit"};
-    app.footer(footer + law_list() + examples);
+    app.footer(fit_footer + law_list() + examples);
     options.add_to(app);
     common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);

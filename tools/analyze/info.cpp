@@ -12,7 +12,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* info_footer =
     "Keys of a result:\n"
     "  document, kind\n"
     "  time (s), temperature (K), relative_density, particles, bonds (counts), box (m), materials\n"
@@ -23,7 +23,7 @@ constexpr const char* footer =
     "  analyze info sintered.kiln\n"
     "  analyze info sintered.kiln | jq .last_step.summary";
 
-const std::vector<Column> columns{{"document", "document", ""},
+const std::vector<Column> info_columns{{"document", "document", ""},
                                   {"kind", "kind", ""},
                                   {"time", "time", "s"},
                                   {"relative_density", "relative density", ""},
@@ -77,8 +77,8 @@ Json other_info(const io::Document& document) {
 
 int info(int argc, char** argv) {
     CLI::App app{"Says what each document of a stream holds.", "analyze info"};
-    app.footer(footer);
-    return report_each(app, argc, argv, columns, [](io::Document document) {
+    app.footer(info_footer);
+    return report_each(app, argc, argv, info_columns, [](io::Document document) {
         const bool is_state = document.header.value("format", Json("dem-state")) == "dem-state";
         return is_state ? state_info(std::move(document)) : other_info(document);
     });

@@ -19,7 +19,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* modulus_footer =
     "Reads dem-bend documents and files FILE.csv of experiments, writes dem-modulus documents. The slope S of force against "
     "deflection is that of the least squares line through the last unloading, as far as its force lies in the window; "
     "E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].\n"
@@ -38,13 +38,12 @@ constexpr const char* footer =
     "  analyze modulus --window 0.9:0.1 bent.json | analyze fit\n"
     "  analyze modulus --span 40mm --width 4mm --height 3mm --compliance 0.2um/N --density 0.79 bar7.csv";
 
-constexpr double confidence = 0.95;
 
-const std::vector<Column> columns{{"relative_density", "relative density", ""}, {"young_modulus", "Young's modulus", "Pa"},
+const std::vector<Column> modulus_columns{{"relative_density", "relative density", ""}, {"young_modulus", "Young's modulus", "Pa"},
                                   {"standard_error", "standard error", "Pa"},   {"points", "points", ""},
                                   {"bond_law", "bond law", ""},                 {"method", "method", ""}};
 
-struct Options {
+struct ModulusOptions {
     analysis::Window window;
     std::optional<double> span, width, height;  // m
     std::optional<double> density, poisson_ratio;
@@ -68,7 +67,7 @@ void add_optional(CLI::App& app, const std::string& name, std::optional<double>&
         ->type_name(known.empty() ? "NUMBER" : "QUANTITY");
 }
 
-void Options::add_to(CLI::App& app) {
+void ModulusOptions::add_to(CLI::App& app) {
     using io::Dimension;
     app.add_option_function<std::string>(
            "--window",
@@ -89,7 +88,7 @@ void Options::add_to(CLI::App& app) {
 }
 
 /// The CSV of an experiment as the document that bend would have written.
-io::Document test_from_csv(const std::string& file, const Options& options) {
+io::Document test_from_csv(const std::string& file, const ModulusOptions& options) {
     const io::CsvTable table(file);
     io::Document document;
     document.place = file;
@@ -122,7 +121,7 @@ Curve curve_of(const io::Document& document) {
 }
 
 /// Force against deflection in the window of the last unloading, and how many points that are.
-std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const Options& options) {
+std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const ModulusOptions& options) {
     const auto branch = analysis::last_unloading(curve.punch);
     if (!branch) throw Error("the curve has no unloading");
     std::vector<double> deflection, force;
@@ -149,14 +148,14 @@ double size_of(const io::Document& document, const std::string& key, const std::
 }
 
 /// Poisson's ratio of the shear correction: the option's, else the document's, which need not have one.
-double poisson_ratio_of(const io::Document& document, const Options& options) {
+double poisson_ratio_of(const io::Document& document, const ModulusOptions& options) {
     if (options.poisson_ratio) return *options.poisson_ratio;
     if (!document.header.contains("poisson_ratio"))
         throw Error("has no poisson_ratio, which the shear correction requires; give --poisson-ratio or --shear none");
     return number_at(document, "poisson_ratio", -1.0);
 }
 
-Json modulus_of(const io::Document& document, const Options& options) {
+Json modulus_of(const io::Document& document, const ModulusOptions& options) {
     expect_format(document, {"dem-bend"}, "modulus");
     const double span = size_of(document, "span", options.span);
     const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
@@ -191,16 +190,17 @@ Json modulus_of(const io::Document& document, const Options& options) {
 }  // namespace
 
 int modulus(int argc, char** argv) {
-    Options options;
+    ModulusOptions options;
     CLI::App app{"Young's modulus from the force and deflection of three-point bending tests.", "analyze modulus"};
-    app.footer(footer);
+    app.footer(modulus_footer);
     options.add_to(app);
     const auto convert = [&](const io::Document& document) {
         Json result = modulus_of(document, options);
         if (result.contains("history")) result["history"].push_back(cli::history_entry("analyze modulus", app, Json::object()));
         return result;
     };
-    return report_each(app, argc, argv, columns, convert, [&](const std::string& file) { return test_from_csv(file, options); });
+    return report_each(app, argc, argv, modulus_columns, convert,
+                       [&](const std::string& file) { return test_from_csv(file, options); });
 }
 
 }  // namespace kiln::analyze

@@ -16,7 +16,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* select_footer =
     "The stream is read once; for every value asked for the nearest state (of equally near ones the first) is written, in the "
     "order asked. With --interpolate it is a state between the first two neighbours in the stream that have the value between "
     "them; they must hold the same particles, by id. Time, box, positions and radii are linear in between; a density is met "
@@ -29,7 +29,7 @@ constexpr const char* footer =
 
 constexpr double far_in_density = 0.01;  // above this difference a warning is due
 
-struct Options {
+struct SelectOptions {
     std::vector<double> density;
     std::vector<double> time;     // s
     std::vector<double> index;    // from 1
@@ -76,7 +76,7 @@ struct Choice {
     std::shared_ptr<const State> state{};
 };
 
-void consider(std::vector<Choice>& choices, const Options& options, const std::shared_ptr<const State>& candidate,
+void consider(std::vector<Choice>& choices, const SelectOptions& options, const std::shared_ptr<const State>& candidate,
               std::size_t number) {
     const std::optional<double> value = options.value_of(*candidate, number);
     if (!value) return;
@@ -94,7 +94,7 @@ struct Place {
 
 /// The state at a wanted value between two neighbours: linear in time and index, sought by bisection for the density of a periodic
 /// box.
-State between(const Place& first, const Place& second, double wanted, const Options& options) {
+State between(const Place& first, const Place& second, double wanted, const SelectOptions& options) {
     double share = (wanted - first.value) / (second.value - first.value);
     if (options.density.empty() || analysis::measured_density(*first.state).measure != "box")
         return analysis::interpolated(*first.state, *second.state, share);
@@ -108,7 +108,8 @@ State between(const Place& first, const Place& second, double wanted, const Opti
     return analysis::interpolated(*first.state, *second.state, share);
 }
 
-void note_crossings(std::vector<Choice>& choices, const Options& options, const std::optional<Place>& before, const Place& now) {
+void note_crossings(std::vector<Choice>& choices, const SelectOptions& options, const std::optional<Place>& before,
+                    const Place& now) {
     for (Choice& choice : choices) {
         const bool at_end = now.value == choice.wanted;
         const bool crossed = before && (before->value - choice.wanted) * (now.value - choice.wanted) < 0.0;
@@ -121,7 +122,7 @@ void note_crossings(std::vector<Choice>& choices, const Options& options, const 
 }
 
 /// Reads the stream and fills the choices; the number of states read.
-std::size_t read(io::Input& input, const Options& options, std::vector<Choice>& choices) {
+std::size_t read(io::Input& input, const SelectOptions& options, std::vector<Choice>& choices) {
     std::size_t states = 0;
     std::optional<Place> before;
     cli::for_each_state(input, [&](State state, const std::string&) {
@@ -140,7 +141,7 @@ std::size_t read(io::Input& input, const Options& options, std::vector<Choice>& 
 }
 
 /// Refuses what cannot be given and warns of what is far from what was wanted.
-void check(const Choice& choice, const Options& options, std::size_t states, bool quiet) {
+void check(const Choice& choice, const SelectOptions& options, std::size_t states, bool quiet) {
     if (!choice.state && options.interpolate)
         throw Error("no two states of the stream have " + std::string(options.key()) + " " + Json(choice.wanted).dump() +
                     " between them");
@@ -157,9 +158,9 @@ void check(const Choice& choice, const Options& options, std::size_t states, boo
 
 int select(int argc, char** argv) {
     cli::Common common;
-    Options options;
+    SelectOptions options;
     CLI::App app{"Writes the states of a stream that are nearest to given densities, times or places.", "analyze select"};
-    app.footer(footer);
+    app.footer(select_footer);
     options.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);

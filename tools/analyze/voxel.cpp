@@ -13,7 +13,7 @@ namespace kiln::analyze {
 
 namespace {
 
-constexpr const char* footer =
+constexpr const char* voxel_footer =
     "The union of spheres and bonds of one state. A voxel is 1 if its middle is solid, else 0; of several "
     "materials it is the number of the material, from 1. Voxels of two spheres that a gap thinner than a voxel parts are 0 along "
     "it. "
@@ -42,7 +42,7 @@ int voxel(int argc, char** argv) {
     cli::Common common;
     double voxels = 12.0;
     CLI::App app{"Writes a state as an image of voxels.", "analyze voxel"};
-    app.footer(footer);
+    app.footer(voxel_footer);
     cli::add_number(app, "--voxels", voxels, {cli::above_zero, 1000.0}, "Voxels a mean radius");
     common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);

@@ -17,10 +17,10 @@ namespace {
 // The densest packing of equal spheres fills pi/sqrt(18) = 0.7405.
 constexpr double densest_loose = 0.74;
 
-constexpr const char* description =
+constexpr const char* green_description =
     "Makes a green body: random spheres in a periodic box at a relative density.";
 
-constexpr const char* footer =
+constexpr const char* green_footer =
     "Examples:\n"
     "  sinter green -n 3000 --density 0.43 --aspect 4:1:1 --seed 1 -o green.kiln\n"
     "  sinter green -n 99000 | sinter --temperature 1200C --to-density 0.67 -o sintered.kiln\n"
@@ -47,8 +47,8 @@ std::array<double, 3> parse_aspect(const std::string& text) {
 
 void GreenOptions::add_to(CLI::App& app) {
     using cli::add_quantity, io::Dimension;
-    app.description(description);
-    app.footer(footer);
+    app.description(green_description);
+    app.footer(green_footer);
     cli::add_number(app, "-n,--particles", packing.particles, {1, std::numeric_limits<std::int32_t>::max()},
                     "Number of particles; with file:LIST as many as it has lines");
     add_quantity(app, "--diameter", diameter, Dimension::length, "Diameter of monosize particles", "100nm");

@@ -84,7 +84,7 @@ void Options::add_boundaries(CLI::App& app) {
 }
 
 void Options::add_method(CLI::App& app) {
-    add_choice(app, "--method", method, {{"implicit", Method::implicit}, {"explicit", Method::explicit_steps}},
+    add_choice(app, "--method", method, {{"implicit", SinterMethod::implicit}, {"explicit", SinterMethod::explicit_steps}},
                "implicit: without inertia, second order in time; explicit: with inertia, scaled, as in the paper");
     add_number(app, "--mass-scaling", mass_scaling, {cli::above_zero}, "Mass over the true one; explicit");
     add_number(app, "--tolerance", tolerance, {}, "Relative error of the density over the run to aim at");

@@ -12,7 +12,7 @@ class App;
 
 namespace kiln::sinter {
 
-enum class Method { implicit, explicit_steps };
+enum class SinterMethod { implicit, explicit_steps };
 
 enum class Report { none, viscosity };
 
@@ -25,7 +25,7 @@ struct Options {
     sintering::Faces faces = sintering::Faces::as_given;
     std::string fixed;              // axes
     std::vector<double> pressure;   // Pa, one or three
-    Method method = Method::implicit;
+    SinterMethod method = SinterMethod::implicit;
     double mass_scaling = 1e20;
     double tolerance = 3e-4;
     int order = 2;

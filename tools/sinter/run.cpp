@@ -20,15 +20,14 @@ namespace {
 
 constexpr double validity_limit = 0.9;  // relative density above which grain growth, which is not modelled, matters
 constexpr double full_density = 1.0;    // that no body passes
-constexpr double same_density = 1e-6;   // relative
 constexpr double most_contacts = 60.0;  // mean coordination number; a body without pores has about 14
 constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
 
 using sintering::triple;
 
 
-Json summary_of(const sintering::StepRecord& record, Method method) {
-    Json summary{{"method", method == Method::implicit ? "implicit" : "explicit"},
+Json summary_of(const sintering::StepRecord& record, SinterMethod method) {
+    Json summary{{"method", method == SinterMethod::implicit ? "implicit" : "explicit"},
                  {"time", record.time},
                  {"duration", record.duration},
                  {"temperature", record.temperature},
@@ -38,7 +37,7 @@ Json summary_of(const sintering::StepRecord& record, Method method) {
                  {"coordination_number", record.contacts.coordination_number},
                  {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
                  {"attempts", record.attempts}};
-    if (method == Method::explicit_steps) return summary;
+    if (method == SinterMethod::explicit_steps) return summary;
     summary["density_error"] = record.error;
     summary["newton"] = record.newton;
     summary["conjugate_gradients"] = record.conjugate_gradients;
@@ -75,7 +74,8 @@ std::vector<std::string> add_viscosities(Json& summary, const State& state, cons
 std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options& options) {
     sintering::SinteringSettings settings = options.settings(state.time);
     settings.stop = cli::stop_requested;
-    if (options.method == Method::explicit_steps) return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
+    if (options.method == SinterMethod::explicit_steps)
+        return std::make_unique<sintering::ExplicitSintering>(std::move(state), settings);
     return std::make_unique<sintering::ImplicitSintering>(std::move(state), settings);
 }
 
@@ -171,7 +171,7 @@ class Sintered {
     void write_state(Json summary, bool reported = true) {
         State reached = method_->state();
         summary["steps"] = method_->steps();
-        if (options_.method == Method::implicit) {
+        if (options_.method == SinterMethod::implicit) {
             summary["newton"] = progressed_.newton;
             summary["conjugate_gradients"] = progressed_.conjugate_gradients;
             summary["converged"] = progressed_.converged;

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double endless = std::numeric_limits<double>::infinity();
 constexpr double same_time = 1e-12;    // relative
-constexpr double same_density = 1e-6;  // relative
 
 }  // namespace
 

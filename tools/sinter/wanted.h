@@ -7,6 +7,8 @@
 
 namespace kiln::sinter {
 
+constexpr double same_density = 1e-6;  // relative; what is nearer counts as reached
+
 /// What is still wanted: ascending densities and times, with the next multiple of --every between.
 class Wanted {
    public:
