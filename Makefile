@@ -36,7 +36,8 @@ PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
 # Piece "unit-2" of 4 is the second quarter of the files of tests/unit.
 UNIT_PIECES    := 4
 PHYSICS_PIECES := 3
-files_of_piece  = $(shell ls tests/$(1)/*.cpp | awk -v n=$$(ls tests/$(1)/*.cpp | wc -l) 'NR > ($(3) - 1) * n / $(2) && NR <= $(3) * n / $(2)')
+files_of_piece  = $(shell ls tests/$(1)/*.cpp | \
+    awk '{name[NR] = $$0} END {for (k in name) if (int((k - 1) * $(2) / NR) == $(3) - 1) print name[k]}' | sort)
 pieces          = $(foreach number,$(shell seq $(2)),$(1)-$(number))
 UNIT_OBJECTS   := $(BUILD)/tests/main.o \
                   $(patsubst %,$(BUILD)/tests/%.o,$(call pieces,unit,$(UNIT_PIECES)) $(call pieces,physics,$(PHYSICS_PIECES)))
@@ -99,8 +100,10 @@ $(BUILD)/$(1).o: $(BUILD)/$(1).cpp $(BUILD)/flags | $(BUILD)/packages-present
 	$$(CXX) $$(CXXFLAGS) $$(PRECOMPILED) -MMD -MP -c $$< -o $$@
 endef
 $(foreach tool,$(TOOLS) common,$(eval $(call piece_rule,tools/$(tool),$(wildcard tools/$(tool)/*.cpp))))
-$(foreach n,$(shell seq $(UNIT_PIECES)),$(eval $(call piece_rule,tests/unit-$(n),$(call files_of_piece,unit,$(UNIT_PIECES),$(n)))))
-$(foreach n,$(shell seq $(PHYSICS_PIECES)),$(eval $(call piece_rule,tests/physics-$(n),$(call files_of_piece,physics,$(PHYSICS_PIECES),$(n)))))
+$(foreach n,$(shell seq $(UNIT_PIECES)),\
+    $(eval $(call piece_rule,tests/unit-$(n),$(call files_of_piece,unit,$(UNIT_PIECES),$(n)))))
+$(foreach n,$(shell seq $(PHYSICS_PIECES)),\
+    $(eval $(call piece_rule,tests/physics-$(n),$(call files_of_piece,physics,$(PHYSICS_PIECES),$(n)))))
 
 define tool_rule
 $(BUILD)/bin/$(1): $(BUILD)/tools/$(1).o $(BUILD)/tools/common.o $(BUILD)/libkiln.a
