@@ -85,6 +85,17 @@ IsotropicAverage isotropic_average(const Mat6& stiffness) {
     return {young, shear, bulk, young / (2.0 * shear) - 1.0, 5.0 * shear / reuss_shear + bulk / reuss_bulk - 6.0};
 }
 
+Mat6 with_poisson_ratio(const Mat6& stiffness, double poisson_ratio) {
+    if (!(poisson_ratio > -1.0 && poisson_ratio < 0.5))
+        throw Error("a Poisson's ratio of " + std::to_string(poisson_ratio) + " is not between -1 and 0.5");
+    const IsotropicAverage average = isotropic_average(stiffness);
+    const double bulk = average.young_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio));
+    const double shear = average.young_modulus / (2.0 * (1.0 + poisson_ratio));
+    Mat6 dilation = Mat6::Zero();
+    dilation.topLeftCorner<3, 3>().setOnes();
+    return (stiffness - average.bulk_modulus * dilation) * (shear / average.shear_modulus) + bulk * dilation;
+}
+
 Vec3 axial_moduli(const Mat6& stiffness) { return compliance_of(stiffness).compliance.diagonal().head<3>().cwiseInverse(); }
 
 }  // namespace kiln::mechanics

@@ -29,6 +29,10 @@ struct IsotropicAverage {
 /// Throws Error for a tensor that is not positive definite.
 IsotropicAverage isotropic_average(const Mat6& stiffness);
 
+/// The stiffness with another Poisson's ratio and the same Young's modulus of its isotropic average: the bulk modulus and the rest
+/// are scaled. Throws Error for a tensor that is not positive definite, or a ratio not between -1 and 0.5.
+Mat6 with_poisson_ratio(const Mat6& stiffness, double poisson_ratio);
+
 /// Young's moduli along x, y and z, Pa: 1/S_aa of the inverse of the stiffness, pulled along an axis with free faces around. Their
 /// mean differs from the isotropic average by up to a tenth in a small cell. Throws Error for a tensor that is not positive
 /// definite.

@@ -27,6 +27,11 @@ double cap_share(double sphere_radius, double bond_radius) {
     return 0.5 * x2 / (1.0 + std::sqrt(1.0 - x2));
 }
 
+double poisson_shift(double poisson_ratio, double solid_fraction) {
+    constexpr double met_by_springs = 0.23, first_fraction = 0.55;
+    return std::clamp((solid_fraction - first_fraction) / (1.0 - first_fraction), 0.0, 1.0) * (poisson_ratio - met_by_springs);
+}
+
 BondStiffness solid_stiffness(double young_modulus, double shear_modulus, const BondGeometry& geometry) {
     const double E = young_modulus, G = shear_modulus, nu = E / (2.0 * G) - 1.0;
     const double smaller = std::min(geometry.sphere_radius_1, geometry.sphere_radius_2);

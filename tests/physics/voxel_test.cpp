@@ -311,3 +311,15 @@ TEST_CASE("voxel: what has no tensor is refused, a request to stop is heard") {
     CHECK_THROWS_WITH_AS(elastic_phases(state), doctest::Contains("material 'unit' has no poisson_ratio"), Error);
     CHECK(memory_of<Solid>({128, 128, 128}) == relative(10.0 * 3.0 * 4.0 * std::pow(128.0, 3), 0.02));
 }
+
+TEST_CASE("elastic: another Poisson's ratio leaves Young's modulus, and the same one leaves the tensor") {
+    const Eigen::MatrixXd c = laminate(0.4, solid(400e9, 0.23), solid(100e9, 0.1));
+    const mechanics::IsotropicAverage before = mechanics::isotropic_average(c);
+    const mechanics::Mat6 moved = mechanics::with_poisson_ratio(c, 0.31);
+    const mechanics::IsotropicAverage after = mechanics::isotropic_average(moved);
+    CHECK(after.young_modulus == relative(before.young_modulus, 1e-12));
+    CHECK(after.poisson_ratio == relative(0.31, 1e-12));
+    CHECK(deviation_of(mechanics::with_poisson_ratio(c, before.poisson_ratio), c) < 1e-12);
+    CHECK(deviation_of(mechanics::with_poisson_ratio(stiffness_of(solid(1.0, 0.1)), 0.4), stiffness_of(solid(1.0, 0.4))) < 1e-12);
+    CHECK_THROWS_WITH_AS(mechanics::with_poisson_ratio(c, 0.5), doctest::Contains("is not between -1 and 0.5"), Error);
+}

@@ -134,3 +134,11 @@ TEST_CASE("solid stands among the laws, and asks for no way of shear") {
     CHECK(bond_stiffness(BondLaw::solid, BondShear::section, E, G, none).normal == 0.0);
     CHECK(name_of(BondLaw::solid) == "solid");
 }
+
+TEST_CASE("solid: what the solid's own Poisson's ratio adds begins with necks that share bulk, and is all of it in a dense body") {
+    CHECK(poisson_shift(0.35, 0.5) == 0.0);
+    CHECK(poisson_shift(0.23, 0.8) == 0.0);
+    CHECK(poisson_shift(0.35, 0.775) == relative(0.06, 1e-12));
+    CHECK(poisson_shift(0.15, 1.0) == relative(-0.08, 1e-12));
+    CHECK(poisson_shift(0.15, 1.1) == relative(-0.08, 1e-12));
+}

@@ -5,6 +5,8 @@
 
 #include "io/state_io.h"
 #include "mechanics/elastic_tensor.h"
+#include "physics/materials.h"
+#include "physics/solid_law.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/voxel_options.h"
@@ -73,6 +75,18 @@ Json averages_json(const mechanics::Mat6& stiffness) {
             {"stiffness", rows_of(stiffness)}};
 }
 
+/// The stiffness of a network; with the law solid its Poisson's ratio has what the springs leave out.
+mechanics::Mat6 stiffness_of(const State& state, const mechanics::Mat6& springs, physics::BondLaw law) {
+    if (law != physics::BondLaw::solid) return springs;
+    double sum = 0.0;
+    for (const std::int32_t row : state.particles.material) {
+        const Material& material = state.materials[static_cast<std::size_t>(row)];
+        sum += physics::required(material.poisson_ratio, material, "poisson_ratio");
+    }
+    const double shift = physics::poisson_shift(sum / static_cast<double>(state.particles.size()), relative_density(state));
+    return mechanics::with_poisson_ratio(springs, mechanics::isotropic_average(springs).poisson_ratio + shift);
+}
+
 Json of_network(const State& state, const mechanics::BondModel& model, double tolerance) {
     const auto& periodic = state.box.periodic;
     if (!std::all_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; }))
@@ -87,7 +101,7 @@ Json of_network(const State& state, const mechanics::BondModel& model, double to
                 {"relative_density", relative_density(state)},
                 {"bond_law", physics::name_of(*body.model.law)},
                 {"bond_shear", body.model.shear ? Json(physics::name_of(*body.model.shear)) : Json()}};
-    result.update(averages_json(tensor.stiffness));
+    result.update(averages_json(stiffness_of(state, tensor.stiffness, *body.model.law)));
     result.update(Json{{"affine", rows_of(tensor.affine)},
                        {"affine_young_modulus", mechanics::isotropic_average(tensor.affine).young_modulus},
                        {"iterations", tensor.iterations},
