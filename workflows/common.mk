@@ -44,7 +44,7 @@ $(OWN) &:
 .PHONY: FORCE
 FORCE:
 
-$(addprefix $(OUT)/,$(addsuffix .settings,GREEN SINTERING BONDING BENDING FIT)): $(OUT)/%.settings: FORCE
+$(addprefix $(OUT)/,$(addsuffix .settings,GREEN SINTERING BONDING BENDING FIT $(MORE_SETTINGS))): $(OUT)/%.settings: FORCE
 	@mkdir -p $(@D)
 	@cmp -s $@ <(echo '$($*)') || echo '$($*)' > $@
 
@@ -76,8 +76,8 @@ $(OUT)/fit.json: $(call each_case,modulus.json) $(OUT)/FIT.settings | $(PROGRAMS
 	$(MEASURE) $@ $(ANALYZE) fit $(FIT) -o $@ $(filter %.json,$^)
 
 # ---- all stages, named so that a missing file is made again and none is taken for a passing step -------------------------------
-CASE_STAGES := sintered.kiln bonded.kiln bonds.json bend.json modulus.json
-STAGES := green.kiln sintered.kiln $(foreach file,$(CASE_STAGES),$(CASES:%=%/$(file))) fit.json
+CASE_STAGES := sintered.kiln bonded.kiln bonds.json bend.json modulus.json $(MORE_CASE_STAGES)
+STAGES := green.kiln sintered.kiln $(foreach file,$(CASE_STAGES),$(CASES:%=%/$(file))) fit.json $(MORE_STAGES)
 
 .PHONY: stages
 stages: $(STAGES:%=$(OUT)/%) $(OUT)/history.jsonl $(call each_case,bent.kiln)

@@ -20,6 +20,8 @@ void add_point(Points& points, const io::Document& document) {
     points.modulus.push_back(positive_at(document, "young_modulus"));
     const bool has_error = document.header.contains("standard_error") && !document.header["standard_error"].is_null();
     points.error.push_back(has_error ? number_at(document, "standard_error", 0.0) : std::nan(""));
+    const bool has_law = document.header.contains("bond_law") && document.header["bond_law"].is_string();
+    points.bond_law.push_back(has_law ? document.header["bond_law"].get<std::string>() : "");
 }
 
 void add_table_points(Points& points, const std::string& file) {
@@ -42,6 +44,7 @@ void add_table_points(Points& points, const std::string& file) {
         points.porosity.push_back((*porosity)[row]);
         points.modulus.push_back(modulus[row]);
         points.error.push_back(error ? (*error)[row] : std::nan(""));
+        points.bond_law.emplace_back();
     }
 }
 
@@ -66,10 +69,12 @@ Points read_points(const std::vector<std::string>& files) {
 
 Json points_json(const Points& points) {
     Json list = Json::array();
-    for (std::size_t point = 0; point < points.modulus.size(); ++point)
+    for (std::size_t point = 0; point < points.modulus.size(); ++point) {
         list.push_back({{"porosity", points.porosity[point]},
                         {"young_modulus", points.modulus[point]},
                         {"standard_error", std::isnan(points.error[point]) ? Json() : Json(points.error[point])}});
+        if (!points.bond_law[point].empty()) list.back()["bond_law"] = points.bond_law[point];
+    }
     return list;
 }
 

@@ -11,6 +11,7 @@ namespace kiln::analyze {
 
 struct Points {
     std::vector<double> porosity, modulus, error;  // -, Pa, Pa (NaN where there is none)
+    std::vector<std::string> bond_law;             // of the test; empty where it does not say
 };
 
 /// Adds the point of a dem-modulus or dem-elastic document. Throws Error naming the key that is missing or out of range.
@@ -23,7 +24,7 @@ void add_table_points(Points& points, const std::string& file);
 /// The points of all files, or of standard input: streams, and tables where the name ends in .csv.
 Points read_points(const std::vector<std::string>& files);
 
-/// A list of {porosity, young_modulus, standard_error}.
+/// A list of {porosity, young_modulus, standard_error} and bond_law where it is known.
 Json points_json(const Points& points);
 
 }  // namespace kiln::analyze

@@ -1,4 +1,4 @@
-"""figure_modulus.py: Young's modulus against density: fit, band, measurements, literature (Fig. 6 of Dosta et al. 2017)."""
+"""figure_modulus.py: Young's modulus against density: fits, bands, measurements, literature (Fig. 6 of Dosta et al. 2017)."""
 import numpy
 
 import style
@@ -19,41 +19,60 @@ def law_text(fit):
     return text.replace("b P", f"{fit.get('b', 0):.2f} P").replace("Pc", f"{fit.get('Pc', 0):.2f}")
 
 
-def draw(fit):
-    """fit: the result of `analyze fit`, which holds points, band, measurements and references."""
-    figure, axes = pyplot.subplots(figsize=(style.WIDTH, 3.9))
-    band = fit["band"]
-    density = numpy.array(band["relative_density"])
-    points = fit["points"]
-    top = max(point["young_modulus"] for point in points)
+SHAPE = 0.12  # of the modulus: what the unknown shape of a neck of the same mass makes (docs/theory.md)
+BONDS_OF = {"solid": "necks of the sintering law", "series": "bonds of Eq. 2\u20134"}
+
+
+def draw_references(axes, fit, density):
+    """The curves of the literature; returns the highest modulus, Pa."""
+    top = 0.0
     for reference, dashes in zip(fit["references"], DASHES):
         curve = numpy.array([numpy.nan if value is None else value for value in reference["young_modulus"]])
         top = max(top, numpy.nanmax(curve))
-        axes.plot(
-            density,
-            curve / GPA,
-            color=style.REFERENCE,
-            linewidth=1.2,
-            linestyle=dashes,
-            label=
-            f"{reference['name']}: {typeset(reference['formula'])}"
-        )
-    if band["confidence"]:
+        axes.plot(density, curve / GPA, color=style.REFERENCE, linewidth=1.2, linestyle=dashes,
+                  label=f"{reference['name']}: {typeset(reference['formula'])}")
+    return top
+
+
+def draw_points(axes, points, colour, mark, label):
+    error = [(point["standard_error"] or 0.0) / GPA for point in points]
+    axes.errorbar([1 - point["porosity"] for point in points], [point["young_modulus"] / GPA for point in points], error, fmt=mark,
+                  color=colour, markersize=5.5, capsize=3, label=label, zorder=3)
+
+
+def draw_fit(axes, fit, bonds, colour, mark):
+    """bonds: what lies between the particles, as text; empty where all points have the same."""
+    band = fit["band"]
+    density = numpy.array(band["relative_density"])
+    curve = numpy.array(band["young_modulus"])
+    necks = bonds == BONDS_OF["solid"]
+    if necks:
+        axes.fill_between(density, (1 - SHAPE) * curve / GPA, (1 + SHAPE) * curve / GPA, color=colour, alpha=0.15, linewidth=0,
+                          label=f"shape of the neck, \u00b1{SHAPE:.0%}".replace("%", " %"))
+    elif band["confidence"]:
         low, high = numpy.array(band["confidence"]).T / GPA
-        axes.fill_between(density, low, high, color=style.LINE, alpha=0.18, linewidth=0, label="95 % confidence of the fit")
-    axes.plot(density, numpy.array(band["young_modulus"]) / GPA, color=style.LINE, label=f"fit, {fit['law']}: {law_text(fit)}")
-    for found, colour, mark, label in ((points, style.ACCENT, "o", "simulated bending"), (fit.get("data", {}).get("points", []),
-                                                                                          "black", "s", "measured")):
-        if found:
-            error = [(point["standard_error"] or 0.0) / GPA for point in found]
-            axes.errorbar([1 - point["porosity"] for point in found], [point["young_modulus"] / GPA for point in found],
-                          error,
-                          fmt=mark,
-                          color=colour,
-                          markersize=5.5,
-                          capsize=3,
-                          label=label,
-                          zorder=3)
+        axes.fill_between(density, low, high, color=colour, alpha=0.18, linewidth=0, label="95 % confidence of the fit")
+    axes.plot(density, curve / GPA, color=colour, label=f"fit, {fit['law']}: {law_text(fit)}")
+    draw_points(axes, fit["points"], colour, mark, f"bending, {bonds}" if bonds else "simulated bending")
+    return max(numpy.max(curve) * (1 + SHAPE if necks else 1.0), max(point["young_modulus"] for point in fit["points"]))
+
+
+def bonds_of(fit):
+    laws = {point.get("bond_law") for point in fit["points"]}
+    return BONDS_OF.get(laws.pop(), "") if len(laws) == 1 else ""
+
+
+def draw(fits):
+    """fits: results of `analyze fit`, which hold points, band, measurements and references."""
+    figure, axes = pyplot.subplots(figsize=(style.WIDTH, 3.9))
+    density = numpy.array(fits[0]["band"]["relative_density"])
+    top = draw_references(axes, fits[0], density)
+    for fit, colour, mark in zip(fits, (style.ACCENT, style.LINE), "o^"):
+        drawn = draw_fit(axes, fit, bonds_of(fit) if len(fits) > 1 else "", colour, mark)
+        top = max(top, drawn)
+    measured = fits[0].get("data", {}).get("points", [])
+    if measured:
+        draw_points(axes, measured, "black", "s", "measured")
     axes.legend(loc="upper left", fontsize="small")
     axes.set_xlim(density[0], 1.0)
     axes.set_ylim(0, 1.05 * top / GPA)
@@ -63,8 +82,8 @@ def draw(fit):
 
 
 def main():
-    given = style.arguments(__doc__, ("fit", "result of analyze fit"))
-    style.save(draw(read_file(given.fit)[0]), given.output)
+    given = style.arguments(__doc__, ("fits", "results of analyze fit: one, or those of necks and of bonds of Eq. 2-4"))
+    style.save(draw([read_file(path)[0] for path in given.fits]), given.output)
 
 
 if __name__ == "__main__":
