@@ -12,7 +12,7 @@ namespace kiln::analysis {
 
 namespace {
 
-constexpr double most_points = 2e8;
+constexpr double max_points = 2e8;
 constexpr std::size_t few_particles = 100;
 
 using Index = std::array<int, 3>;
@@ -66,7 +66,7 @@ Grid grid_for(const State& state, double probe, double spacing) {
         }
         const double points = std::max(1.0, std::ceil(length / spacing));
         count *= points;
-        if (count > most_points) throw Error("the particles are too far apart for an envelope");
+        if (count > max_points) throw Error("the particles are too far apart for an envelope");
         grid.points[a] = static_cast<int>(points);
         grid.step[axis] = length / points;
         grid.origin[axis] = low + 0.5 * grid.step[axis];

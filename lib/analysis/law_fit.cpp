@@ -20,8 +20,8 @@ using physics::PorosityLaw;
 using Values = std::span<const double>;
 
 constexpr double tolerance = 1e-13;       // relative, of parameters and of the sum of squares
-constexpr double least_spread = 1e-9;     // of the porosities, where more than a factor is sought
-constexpr double least_singular = 1e-10;  // smallest over largest singular value below which parameters are not determined
+constexpr double min_spread = 1e-9;     // of the porosities, where more than a factor is sought
+constexpr double min_singular = 1e-10;  // smallest over largest singular value below which parameters are not determined
 
 /// First guess: from the line through the points in the law's straight form; of a factor alone the mean of what each point says.
 std::vector<double> first_guess(const PorosityLaw& law, Values porosity, Values modulus) {
@@ -121,7 +121,7 @@ Fit fit_law(const PorosityLaw& law, Values porosity, Values modulus, Values weig
         "the points do not determine the parameters of law " + law.name + ": their densities are too much alike";
     const auto [least, most] = std::ranges::minmax(porosity);
     const bool has_start = std::ranges::all_of(problem.unit, [](double each) { return std::isfinite(each); });
-    if ((parameters > 1 && most - least < least_spread) || !has_start) throw Error(undetermined);
+    if ((parameters > 1 && most - least < min_spread) || !has_start) throw Error(undetermined);
 
     Differentiable functor(problem);
     Eigen::LevenbergMarquardt<Differentiable> solver(functor);
@@ -137,7 +137,7 @@ Fit fit_law(const PorosityLaw& law, Values porosity, Values modulus, Values weig
     functor(scaled, residuals);
     functor.df(scaled, jacobian);
     const VectorXd singular = jacobian.jacobiSvd().singularValues();
-    if (!(singular.minCoeff() > least_singular * singular.maxCoeff())) throw Error(undetermined);
+    if (!(singular.minCoeff() > min_singular * singular.maxCoeff())) throw Error(undetermined);
 
     Fit fit;
     fit.parameters = problem.parameters(scaled);

@@ -12,7 +12,7 @@ namespace kiln::analysis {
 
 namespace {
 
-constexpr double least_width = 3.0;  // of the inner region, in mean diameters
+constexpr double min_width = 3.0;  // of the inner region, in mean diameters
 
 /// Volume of each particle with half of each of its bonds, m3.
 std::vector<double> solid_volumes(const State& state) {
@@ -89,7 +89,7 @@ Density inner_density(const State& state) {
     for (int axis = 0; axis < 3; ++axis) {
         const bool is_periodic = state.box.periodic[static_cast<std::size_t>(axis)];
         const double width = is_periodic ? state.box.lengths[axis] : upper[axis] - lower[axis] - 2.0 * diameter;
-        if (!is_periodic && width < least_width * diameter) return {std::nullopt, "none"};
+        if (!is_periodic && width < min_width * diameter) return {std::nullopt, "none"};
         volume *= width;
         if (is_periodic) continue;
         lower[axis] += diameter;

@@ -11,7 +11,7 @@ namespace kiln::analysis {
 namespace {
 
 constexpr double rounding = 1e-9;      // of the peak force, by which a point may miss the window
-constexpr double least_return = 0.02;  // of the whole travel, by which the punch must go back; less is tremor of the reading
+constexpr double min_return = 0.02;  // of the whole travel, by which the punch must go back; less is tremor of the reading
 
 std::optional<double> number_of(std::string_view text) {
     double number = 0.0;
@@ -35,7 +35,7 @@ std::optional<double> fraction_of(std::string_view text) {
 std::optional<Branch> last_unloading(std::span<const double> travel) {
     if (travel.size() < 2) return std::nullopt;
     const auto [least, most] = std::ranges::minmax(travel);
-    const double tremor = least_return * (most - least);
+    const double tremor = min_return * (most - least);
     std::optional<Branch> found;
     std::size_t top = 0, bottom = 0;  // of the stretch that is being walked, as far as it goes
     bool down = false;

@@ -14,7 +14,7 @@ namespace kiln::bonding {
 namespace {
 
 /// Room to shrink: twice what the smallest radii would fill.
-constexpr double closest_share = 2.0 * smallest_share;
+constexpr double closest_share = 2.0 * min_share;
 
 std::vector<Overlap> overlaps_of(const State& state, const std::vector<Pair>& pairs) {
     const Particles& particles = state.particles;

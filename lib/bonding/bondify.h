@@ -38,7 +38,7 @@ struct Summary {
     double lost_volume = 0.0;        // m3, left over in those
     std::size_t thin = 0;            // bonds below the thin ratio, kept or not
     double dropped_volume = 0.0;     // m3, of thin bonds left out
-    std::size_t stopped = 0;         // particles that came down to smallest_share of their radius
+    std::size_t stopped = 0;         // particles that came down to min_share of their radius
     double volume_error = 0.0;       // solid volume after, dropped bonds included, over before, minus one
 
     // Of necks.

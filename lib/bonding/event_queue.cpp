@@ -61,7 +61,7 @@ class Shrinking {
     Shrinking(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing)
         : overlaps_(overlaps), sharing_(sharing), volume_(overlaps.size()) {
         particles_.reserve(radius.size());
-        for (const double r : radius) particles_.push_back({.intercept = r, .smallest = smallest_share * r});
+        for (const double r : radius) particles_.push_back({.intercept = r, .smallest = min_share * r});
         for (const Overlap& overlap : overlaps) {
             ++first(overlap).overlaps;
             ++second(overlap).overlaps;

@@ -27,7 +27,7 @@ Shrunk shrink_by_sweeps(std::span<const double> radius, std::span<const Overlap>
                         const Watch& watch) {
     Shrunk result{.radius{radius.begin(), radius.end()}, .volume = std::vector<double>(overlaps.size())};
     std::vector<double> smallest(radius.size()), given(radius.size());
-    std::ranges::transform(radius, smallest.begin(), [](double r) { return smallest_share * r; });
+    std::ranges::transform(radius, smallest.begin(), [](double r) { return min_share * r; });
     std::vector<std::int32_t> count(radius.size());
     std::vector<std::uint32_t> active(overlaps.size());
     for (std::uint32_t index = 0; index < overlaps.size(); ++index) {

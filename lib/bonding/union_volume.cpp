@@ -18,7 +18,7 @@ using std::numbers::pi;
 
 constexpr std::size_t all_points = 1'500'000;      // of all ends, at least
 constexpr std::size_t fewest_points = 2;           // of an end
-constexpr std::size_t most_points = 4096;          // the same
+constexpr std::size_t max_points = 4096;          // the same
 constexpr std::size_t particles_of_a_chunk = 256;  // fixed, whatever the number of threads
 constexpr double reach_to_spare = 1.02;            // lists of neighbours serve for necks a little larger
 
@@ -93,7 +93,7 @@ UnionVolume::UnionVolume(const Box& box, std::span<const Vec3> position, std::sp
                           [&](const auto& visit) { visit_ends<End>(box, position, radius, pairs, visit); })),
       half_(ends_.items.size()),
       swollen_(radius.begin(), radius.end()),
-      points_(std::clamp(all_points / std::max<std::size_t>(1, ends_.items.size()), fewest_points, most_points)) {
+      points_(std::clamp(all_points / std::max<std::size_t>(1, ends_.items.size()), fewest_points, max_points)) {
     find_near(radius);
     const Part lenses = sum_over_ends([this](std::size_t row, std::size_t end) { return lens(row, end); });
     double all = 0.0;

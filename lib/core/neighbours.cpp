@@ -17,7 +17,7 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-constexpr std::int64_t most_cells = 1 << 20;  // along an axis, so that a cell's index fits into 60 bits
+constexpr std::int64_t max_cells = 1 << 20;  // along an axis, so that a cell's index fits into 60 bits
 constexpr double rounding_margin = 1e-9;      // in cells, so that no pair is lost to the rounding of a cell coordinate
 constexpr double farthest_home = 1e9;         // boxes that a position may be away from the box
 constexpr std::size_t chunk_particles = 512;  // particles a task; fixed, whatever the number of threads
@@ -51,7 +51,7 @@ struct Frame {
 
 struct Grid {
     std::array<std::int64_t, 3> cells;
-    double largest_reach;            // m
+    double max_reach;            // m
     std::uint64_t places = 0;        // of the table
     std::vector<std::size_t> begin;  // first entry of each place, and the end
     std::vector<Entry> entries;
@@ -90,8 +90,8 @@ std::size_t size_class(double reach, double smallest) { return static_cast<std::
 
 void number_cells(Grid& grid, const Frame& frame) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double fitting = std::floor(frame.extent[static_cast<int>(axis)] / (2.0 * grid.largest_reach));
-        grid.cells[axis] = static_cast<std::int64_t>(std::clamp(fitting, 1.0, static_cast<double>(most_cells)));
+        const double fitting = std::floor(frame.extent[static_cast<int>(axis)] / (2.0 * grid.max_reach));
+        grid.cells[axis] = static_cast<std::int64_t>(std::clamp(fitting, 1.0, static_cast<double>(max_cells)));
     }
 }
 
@@ -113,8 +113,8 @@ std::vector<Grid> build_grids(const Frame& frame, std::span<const Vec3> position
     std::vector<Grid> grids(size_class(largest, smallest) + 1);
     for (std::size_t row = 0; row < reach.size(); ++row) {
         Grid& grid = grids[size_class(reach[row], smallest)];
-        if (grid.entries.empty()) grid.largest_reach = 0.0;
-        grid.largest_reach = std::max(grid.largest_reach, reach[row]);
+        if (grid.entries.empty()) grid.max_reach = 0.0;
+        grid.max_reach = std::max(grid.max_reach, reach[row]);
         grid.entries.push_back({position[row], reach[row], 0, {0, 0, 0}, static_cast<std::int32_t>(row)});
     }
     std::erase_if(grids, [](const Grid& grid) { return grid.entries.empty(); });
@@ -149,7 +149,7 @@ Visit visit_axis(const Frame& frame, const Grid& grid, const Entry& entry, int a
     const auto cells = static_cast<double>(grid.cells[at]);
     const double centre = frame.fraction(entry.position[axis], axis, home) * cells;
     const double range =
-        (entry.reach + grid.largest_reach) / frame.extent[axis] * cells * (1.0 + rounding_margin) + rounding_margin;
+        (entry.reach + grid.max_reach) / frame.extent[axis] * cells * (1.0 + rounding_margin) + rounding_margin;
     if (frame.periodic[at])
         return {static_cast<std::int64_t>(std::floor(centre - range)), static_cast<std::int64_t>(std::floor(centre + range)),
                 grid.cells[at]};

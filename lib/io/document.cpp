@@ -19,7 +19,7 @@ namespace kiln::io {
 namespace {
 
 constexpr std::size_t first_chunk = 1 << 20;                     // bytes of an array taken before its arrival is seen
-constexpr std::size_t largest_size = std::size_t{1} << 31;       // rows are counted by i4
+constexpr std::size_t max_size = std::size_t{1} << 31;       // rows are counted by i4
 constexpr std::uint64_t unknown_length = std::numeric_limits<std::uint64_t>::max();
 
 [[noreturn]] void fail(const std::string& place, const std::string& cause) { throw Error(place + ": " + cause); }
@@ -30,7 +30,7 @@ std::vector<std::size_t> shape_from(const Json& spec, const std::string& where) 
     std::vector<std::size_t> shape;
     std::size_t values = 1;
     for (const Json& size : spec["shape"]) {
-        if (!size.is_number_integer() || size.get<std::int64_t>() < 0 || size.get<std::uint64_t>() >= largest_size)
+        if (!size.is_number_integer() || size.get<std::int64_t>() < 0 || size.get<std::uint64_t>() >= max_size)
             fail(where, "shape " + shown(spec["shape"]) + " is not a list of sizes");
         shape.push_back(size.get<std::size_t>());
         if (__builtin_mul_overflow(values, shape.back(), &values) || values > std::numeric_limits<std::int64_t>::max() / 8)

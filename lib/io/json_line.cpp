@@ -31,7 +31,7 @@ class Builder final : public nlohmann::json_sax<Json> {
 
     bool key(string_t& name) override {
         Json& object = *open_.back();
-        if (object.size() == most_keys) fail("has an object of more than " + std::to_string(most_keys) + " keys");
+        if (object.size() == max_keys) fail("has an object of more than " + std::to_string(max_keys) + " keys");
         const auto [entry, fresh] = object.emplace(name, nullptr);
         if (!fresh) fail("key '" + clipped(name) + "' stands twice");
         named_ = &*entry;

@@ -11,7 +11,7 @@ namespace {
 
 /// Part of a diagonal block's trace below which what elimination left of it is rounding of the blocks.
 template <typename Real>
-constexpr double smallest_pivot = sizeof(Real) == 4 ? 1e-6 : 1e-14;
+constexpr double min_pivot = sizeof(Real) == 4 ? 1e-6 : 1e-14;
 
 constexpr std::size_t long_row = 64;  // blocks, from which bisection is quicker than going along
 
@@ -104,7 +104,7 @@ void IncompleteCholesky<Real>::eliminate(const NodeRange& range) {
             block(lower_, place) = (u * block(inverse_, i).template cast<double>()).template cast<Real>();
             diagonal_[row] -= block(lower_, place).template cast<double>() * u.transpose();
         }
-        block(inverse_, row) = pivot_inverse(diagonal_[row], trace, smallest_pivot<Real>).template cast<Real>();
+        block(inverse_, row) = pivot_inverse(diagonal_[row], trace, min_pivot<Real>).template cast<Real>();
     }
 }
 

@@ -30,7 +30,7 @@ std::vector<Mat6> inverse_diagonal(const BlockMatrix& matrix) {
 }
 
 /// Largest eigenvalue of the block-Jacobi matrix, by power iteration from a fixed rough vector.
-double largest_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& inverse) {
+double max_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& inverse) {
     Vector x(inverse.size()), y;
     for (std::size_t i = 0; i < x.size(); ++i) {
         for (int k = 0; k < 6; ++k) x[i][k] = std::sin(1.0 + 12.9898 * static_cast<double>(i) + 78.233 * k);
@@ -75,10 +75,10 @@ Eigen::MatrixXd dense(const BlockMatrix& matrix) {
 
 }  // namespace
 
-Multigrid::Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double largest_eigenvalue_bound) {
+Multigrid::Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double max_eigenvalue_bound) {
     levels_.emplace_back();
     levels_.front().matrix = &matrix;
-    levels_.front().largest_eigenvalue = largest_eigenvalue_bound;
+    levels_.front().max_eigenvalue = max_eigenvalue_bound;
     build(std::move(geometry));
     for (Level& level : levels_) {
         if (!level.matrix) level.matrix = &level.own;
@@ -96,13 +96,13 @@ void Multigrid::build(NodeGeometry geometry) {
             return;
         }
         level.inverse_diagonal = inverse_diagonal(matrix);
-        if (level.largest_eigenvalue == 0.0) level.largest_eigenvalue = largest_eigenvalue(matrix, level.inverse_diagonal);
+        if (level.max_eigenvalue == 0.0) level.max_eigenvalue = max_eigenvalue(matrix, level.inverse_diagonal);
         const Aggregates aggregates = find_aggregates(matrix);
         // Each level has fewer nodes than the one before, so the loop ends; nodes that nothing connects would never become fewer.
         if (aggregates.root.size() >= at(matrix.rows()))
             throw Error("the matrix has " + std::to_string(matrix.rows()) +
                         " nodes that nothing connects, so it cannot be coarsened");
-        level.prolongation = smoothed(matrix, level.inverse_diagonal, prolongation_damping / level.largest_eigenvalue,
+        level.prolongation = smoothed(matrix, level.inverse_diagonal, prolongation_damping / level.max_eigenvalue,
                                       rigid_prolongation(aggregates, geometry));
         level.restriction = column_index(level.prolongation);
         std::vector<Vec3> roots;
@@ -123,7 +123,7 @@ double Multigrid::complexity() const {
 /// Two steps of the Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1).
 void Multigrid::smooth(Level& level, bool from_zero) {
     const BlockMatrix& matrix = *level.matrix;
-    const double high = level.largest_eigenvalue, low = smoothed_part * high;
+    const double high = level.max_eigenvalue, low = smoothed_part * high;
     const double theta = (high + low) / 2.0, delta = (high - low) / 2.0;
     const double first_rho = delta / theta, second_rho = 1.0 / (2.0 * theta / delta - first_rho);
     const std::array factors{std::array{0.0, 1.0 / theta}, std::array{second_rho * first_rho, 2.0 * second_rho / delta}};

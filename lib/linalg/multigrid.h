@@ -15,9 +15,9 @@ namespace kiln::linalg {
 /// 2003).
 class Multigrid {
    public:
-    /// matrix: symmetric positive definite, kept by reference; largest_eigenvalue: bound for that of the block-Jacobi matrix.
+    /// matrix: symmetric positive definite, kept by reference; max_eigenvalue: bound for that of the block-Jacobi matrix.
     /// Throws Error where nodes are too many for a dense factorisation and none is connected to another.
-    Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double largest_eigenvalue);
+    Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double max_eigenvalue);
     Multigrid(const Multigrid&) = delete;  // coarse levels refer to matrices of their own
     Multigrid& operator=(const Multigrid&) = delete;
 
@@ -33,7 +33,7 @@ class Multigrid {
         BlockMatrix own;  // empty on the finest level
         const BlockMatrix* matrix = nullptr;
         std::vector<Mat6> inverse_diagonal;
-        double largest_eigenvalue = 0.0;
+        double max_eigenvalue = 0.0;
         BlockMatrix prolongation;  // from the next coarser level
         ColumnIndex restriction;
         Vector load, solution, step;

@@ -23,7 +23,7 @@ using Field = std::vector<linalg::Quad<double>>;  // of each node, under the gra
 constexpr std::size_t nodes_of_a_range = 4096;  // factorised by themselves; fixed, whatever the number of threads
 constexpr int max_iterations = 5000;
 constexpr int max_restarts = 3;              // with the residual as it is
-constexpr double least_conduction = 1e-12;   // of the largest principal value, below which nothing leads through the box
+constexpr double min_conduction = 1e-12;   // of the largest principal value, below which nothing leads through the box
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 
@@ -232,7 +232,7 @@ void solve(ConductionSystem& system, double tolerance, const StopRequest& stop, 
 /// True where flow leads through the box along all directions.
 bool leads_through(const Mat3& network) {
     const Vec3 principal = network.selfadjointView<Eigen::Lower>().eigenvalues();
-    return principal.minCoeff() > least_conduction * principal.maxCoeff();
+    return principal.minCoeff() > min_conduction * principal.maxCoeff();
 }
 
 }  // namespace
@@ -242,7 +242,7 @@ Conductivity conductivity(const State& state, double solid_fraction, const Condu
     const auto& periodic = state.box.periodic;
     if (!std::ranges::all_of(periodic, [](bool axis) { return axis; }))
         throw Error("the box is not periodic along all axes, so the state has no conductivity of its own");
-    const BondedPiece piece = largest_piece(state);
+    const BondedPiece piece = max_piece(state);
     const Conductors network = conductors_of(state, piece, solid_fraction, conductor);
     Conductivity result;
     result.fragments = piece.fragments;

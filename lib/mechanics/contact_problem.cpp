@@ -28,7 +28,7 @@ Eigen::VectorXd seat_in(ReducedSpace& space, ContactSet& contacts, double force)
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitX());
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitY());
     for (std::size_t field = 0; field < space.fields(); ++field) contacts.add_field(space.displacement(field));
-    const double overlap = contacts.largest_overlap(force);
+    const double overlap = contacts.max_overlap(force);
     Eigen::VectorXd freedoms = Eigen::VectorXd::Zero(space.stiffness().rows());
     freedoms[0] = 2.0 * overlap;
     freedoms[1] = -overlap;
@@ -106,7 +106,7 @@ Vector ContactProblem::unbalanced(const ContactSet::Forces& forces) const {
 bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     ReducedSpace::Response response = space_.response(solver_, unbalanced);
     iterations += response.iterations;
-    const double unit = contacts_.largest_approach(response.displacement);
+    const double unit = contacts_.max_approach(response.displacement);
     if (!space_.add(solver_, std::move(response), unit)) return false;
     contacts_.add_field(space_.displacement(space_.fields() - 1));
     freedoms_.conservativeResize(freedoms_.size() + 1);
@@ -163,7 +163,7 @@ void ContactProblem::conclude(Equilibrium& state, const ContactSet::Forces& forc
 /// Keeps of all elastic fields only what they add up to now: contacts without friction need no more of the past.
 void ContactProblem::join_responses() {
     ReducedSpace::Field sum = space_.sum_of_responses(freedoms_);
-    const double unit = contacts_.largest_approach(sum.displacement);
+    const double unit = contacts_.max_approach(sum.displacement);
     space_.replace_responses(std::move(sum), unit);
     const auto last = static_cast<Eigen::Index>(space_.fields());
     contacts_.keep_fields(space_.rigid_motions());

@@ -202,7 +202,7 @@ std::size_t ContactSet::closed_pairs(const Forces& forces) const {
                             [](double force) { return force > 0.0; }));
 }
 
-double ContactSet::largest_overlap(double force) const {
+double ContactSet::max_overlap(double force) const {
     double overlap = 0.0;
     for (const Contact& contact : contacts_) {
         overlap = std::max(overlap, physics::hertz_overlap(contact.modulus, contact.radius, force));
@@ -210,7 +210,7 @@ double ContactSet::largest_overlap(double force) const {
     return overlap;
 }
 
-double ContactSet::largest_approach(const Vector& displacement) const {
+double ContactSet::max_approach(const Vector& displacement) const {
     double largest = 0.0;
     for (const Contact& contact : contacts_) largest = std::max(largest, std::abs(approach(contact, displacement)));
     return largest;

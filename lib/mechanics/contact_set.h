@@ -40,9 +40,9 @@ class ContactSet {
     std::size_t closed_pairs(const Forces& forces) const;
 
     /// m, overlap of the contact that gets most of it where each carries the force (N) alone.
-    double largest_overlap(double force) const;
+    double max_overlap(double force) const;
     /// How far a displacement closes or opens the contact that it moves most, m.
-    double largest_approach(const Vector& displacement) const;
+    double max_approach(const Vector& displacement) const;
 
     /// The space has one more field at its end, or only so many of the first ones.
     void add_field(const Vector& displacement);

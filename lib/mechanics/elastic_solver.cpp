@@ -9,7 +9,7 @@ namespace kiln::mechanics {
 namespace {
 
 /// Two nodes a bond: a sum of such matrices is at most twice its block diagonal.
-constexpr double largest_eigenvalue_of_bonds = 2.0;
+constexpr double max_eigenvalue_of_bonds = 2.0;
 
 std::size_t middle_node(const BondNetwork& network) {
     Vec3 centre = Vec3::Zero();
@@ -41,7 +41,7 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequ
         if (ground == Ground::displacement_and_rotation) ground_.tail<3>().setConstant(mean);
         block.diagonal() += ground_;
     }
-    preconditioner_ = std::make_unique<linalg::Multigrid>(matrix_, geometry_of(network), largest_eigenvalue_of_bonds);
+    preconditioner_ = std::make_unique<linalg::Multigrid>(matrix_, geometry_of(network), max_eigenvalue_of_bonds);
 }
 
 linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {

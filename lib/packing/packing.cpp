@@ -67,9 +67,9 @@ void check_relaxed(const PackingOptions& options, const Relaxation& relaxation) 
         throw Error("relative density " + rounded(options.density) + ": " + when + " the mean overlap is " +
                     rounded(relaxation.mean_overlap) + " of the radii, above the required " + rounded(options.mean_overlap));
     // Lengths larger by 1/(1 - largest overlap ratio) would part all spheres.
-    const double reached = options.density * std::pow(1.0 - relaxation.largest_overlap, 3);
+    const double reached = options.density * std::pow(1.0 - relaxation.max_overlap, 3);
     throw Error("relative density " + rounded(options.density) + ": " + when + " spheres still overlap by up to " +
-                rounded(relaxation.largest_overlap) + " of their radii; about " + rounded(reached) + " can be reached without");
+                rounded(relaxation.max_overlap) + " of their radii; about " + rounded(reached) + " can be reached without");
 }
 
 }  // namespace

@@ -31,12 +31,12 @@ struct Lists {
 
 struct Sums {
     std::size_t touches = 0;  // each contact counts twice
-    double largest_overlap = 0.0, overlap = 0.0;
+    double max_overlap = 0.0, overlap = 0.0;
     double contact_square = 0.0, net_square = 0.0;  // m2, squared accelerations
 
     void add(const Sums& other) {
         touches += other.touches;
-        largest_overlap = std::max(largest_overlap, other.largest_overlap);
+        max_overlap = std::max(max_overlap, other.max_overlap);
         overlap += other.overlap;
         contact_square += other.contact_square;
         net_square += other.net_square;
@@ -79,7 +79,7 @@ Vec3 acceleration_of(std::size_t row, const Box& box, std::span<const double> ra
         net -= push / distance * apart;
         ++sums.touches;
         sums.overlap += overlap / reach;
-        sums.largest_overlap = std::max(sums.largest_overlap, overlap / reach);
+        sums.max_overlap = std::max(sums.max_overlap, overlap / reach);
         sums.contact_square += push * push;
     }
     sums.net_square += net.squaredNorm();
@@ -125,12 +125,12 @@ Relaxation relax(const Box& box, std::span<const double> radius, std::vector<Vec
     for (;; ++now.steps) {
         const Sums sums = accelerate(box, radius, position, lists, acceleration);
         now.contacts = sums.touches / 2;
-        now.largest_overlap = sums.largest_overlap;
+        now.max_overlap = sums.max_overlap;
         now.mean_overlap = sums.touches > 0 ? sums.overlap / static_cast<double>(sums.touches) : 0.0;
-        now.finished = now.largest_overlap <= options.largest_overlap || now.mean_overlap <= options.mean_overlap;
+        now.finished = now.max_overlap <= options.max_overlap || now.mean_overlap <= options.mean_overlap;
         now.jammed = !now.finished && sums.net_square <= at_rest * at_rest * sums.contact_square;
         if (progress) progress(now);
-        if (now.finished || now.jammed || now.steps == options.most_steps) return now;
+        if (now.finished || now.jammed || now.steps == options.max_steps) return now;
         throw_if_stopped(stop);
         if (step(radius, acceleration, damping, lists, velocity, position) > margin) make_lists(box, radius, position, lists);
     }

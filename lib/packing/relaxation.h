@@ -13,15 +13,15 @@ namespace kiln::packing {
 /// Overlap ratios are h/(r_i + r_j), for equal spheres h/2R.
 struct RelaxationOptions {
     double damping = 0.295;         // of a pair, as a fraction of its critical damping
-    double largest_overlap = 1e-5;  // ends when the largest overlap ratio is at or below this
+    double max_overlap = 1e-5;  // ends when the largest overlap ratio is at or below this
     double mean_overlap = 0.0;      // or when the mean overlap ratio of the contacts is
-    int most_steps = 20000;
+    int max_steps = 20000;
 };
 
 struct Relaxation {
     int steps = 0;
     std::size_t contacts = 0;      // overlapping pairs
-    double largest_overlap = 0.0;  // ratio
+    double max_overlap = 0.0;  // ratio
     double mean_overlap = 0.0;     // ratio, mean of the contacts
     bool jammed = false;           // the forces on every particle balance: nothing moves any more
     bool finished = false;         // one of the two wanted overlaps was reached

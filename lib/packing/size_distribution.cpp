@@ -12,7 +12,7 @@ namespace kiln::packing {
 
 namespace {
 
-constexpr double smallest_share = 1e-3;  // of a lognormal distribution between its cut-offs; drawing from less would take too long
+constexpr double min_share = 1e-3;  // of a lognormal distribution between its cut-offs; drawing from less would take too long
 
 std::vector<std::string> split(const std::string& text) {
     std::vector<std::string> parts(1);
@@ -45,7 +45,7 @@ Lognormal parse_lognormal(const std::vector<std::string>& parts) {
     lognormal.largest = positive_length(parts[4]);
     const bool sharp = lognormal.deviation == 1.0;
     if (sharp ? lognormal.median < lognormal.smallest || lognormal.median > lognormal.largest
-              : share_below(lognormal, lognormal.largest) - share_below(lognormal, lognormal.smallest) < smallest_share)
+              : share_below(lognormal, lognormal.largest) - share_below(lognormal, lognormal.smallest) < min_share)
         throw TextError("less than a thousandth of the lognormal distribution lies between its cut-offs");
     return lognormal;
 }

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double least_constriction = 1e-3;  // of a side's resistance, so that none is without any
+constexpr double min_constriction = 1e-3;  // of a side's resistance, so that none is without any
 constexpr double bulk_factor = 0.94;
 constexpr double alignment_power = 3.0 / 4.0;
 
@@ -23,7 +23,7 @@ NeckSide neck_side(double conductivity, double sphere_radius, double neck_radius
     const double cubic = 1.0 + x * (-0.678 + x * (1.048 - 0.602 * x));
     const double resistance = open / (4.0 * conductivity * a * cubic) + half / (conductivity * area);
     const double length = s + half, volume = pi * s * (R * R - s * s / 3.0) + area * half;
-    return {length, std::max(least_constriction * resistance, resistance - length * length / (conductivity * volume))};
+    return {length, std::max(min_constriction * resistance, resistance - length * length / (conductivity * volume))};
 }
 
 double bulk_resistance(double conductivity, double length, double volume, double alignment) {

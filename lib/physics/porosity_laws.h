@@ -40,7 +40,7 @@ const PorosityLaw& porosity_law(const std::string& name);
 /// A curve of the literature to compare with; its values are those of its source.
 struct ReferenceCurve {
     std::string name, formula, source;
-    double largest_porosity;             // up to which it is meant
+    double max_porosity;             // up to which it is meant
     double (*modulus)(double porosity);  // Pa
 };
 

@@ -10,7 +10,7 @@ namespace kiln::physics {
 
 namespace {
 
-constexpr double largest_panel = 0.005;  // change of temperature over temperature
+constexpr double max_panel = 0.005;  // change of temperature over temperature
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::vector<double> Schedule::panels(double from, double until) const {
     std::vector<double> ends{from};
     const auto reach = [&](double time) {
         const double first = temperature(ends.back()), last = temperature(time);
-        const auto count = static_cast<int>(std::ceil(std::abs(std::log(last / first)) / largest_panel));
+        const auto count = static_cast<int>(std::ceil(std::abs(std::log(last / first)) / max_panel));
         const double begin = ends.back();
         for (int panel = 1; panel < count; ++panel) ends.push_back(begin + (time - begin) * panel / count);
         ends.push_back(time);

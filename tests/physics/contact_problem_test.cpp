@@ -33,7 +33,7 @@ Vector uneven_load(const BondNetwork& network, int number) {
     return load;
 }
 
-double largest_displacement(const Vector& displacement) {
+double max_displacement(const Vector& displacement) {
     double largest = 0.0;
     for (const Vec6& each : displacement) largest = std::max(largest, each.head<3>().cwiseAbs().maxCoeff());
     return largest;
@@ -53,7 +53,7 @@ void fill(ReducedSpace& space, ElasticSolver& solver, const BondNetwork& network
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitY());
     for (int k = 0; k < responses; ++k) {
         ReducedSpace::Response response = space.response(solver, uneven_load(network, k));
-        const double unit = largest_displacement(response.displacement);
+        const double unit = max_displacement(response.displacement);
         REQUIRE(space.add(solver, std::move(response), unit));
     }
 }

@@ -248,7 +248,7 @@ TEST_CASE("bondify: a small particle deep inside a large one stops, the large on
         options.decrement = 1e-6;
         const Summary summary = bonding::bondify(state, options);
         CHECK(summary.stopped == 1);
-        CHECK(state.particles.radius[1] == relative(smallest_share * 0.1, 1e-12));
+        CHECK(state.particles.radius[1] == relative(min_share * 0.1, 1e-12));
         CHECK(state.particles.radius[0] == relative(0.599, 1e-5));
         CHECK(std::abs(summary.volume_error) < 1e-12);
         CHECK(summary.clamped == 1);

@@ -36,7 +36,7 @@ PackingOptions few(std::int64_t particles, std::uint64_t seed = 1) {
 bool close(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance * std::abs(b); }
 
 /// Largest h/(r_i + r_j) of spheres, with radii multiplied by a factor.
-double largest_overlap(const State& state, double factor) {
+double max_overlap(const State& state, double factor) {
     std::vector<double> radius = state.particles.radius;
     for (double& each : radius) each *= factor;
     double largest = 0.0;
@@ -132,9 +132,9 @@ TEST_CASE("green: relative density and box edges are exact") {
 
 TEST_CASE("green: loose spheres do not overlap before the swell, some touch, and none overlaps by more than the swell after it") {
     const State state = packed(few(2000));
-    CHECK(largest_overlap(state, 1.0 / 1.01) < 1.1e-5);
-    CHECK(largest_overlap(state, 1.0 / 1.0099) > 5e-5);
-    CHECK(largest_overlap(state, 1.0) <= 1.0 - (1.0 - 1.1e-5) / 1.01);
+    CHECK(max_overlap(state, 1.0 / 1.01) < 1.1e-5);
+    CHECK(max_overlap(state, 1.0 / 1.0099) > 5e-5);
+    CHECK(max_overlap(state, 1.0) <= 1.0 - (1.0 - 1.1e-5) / 1.01);
 }
 
 TEST_CASE("green: contacts of the paper's green body") {
@@ -200,7 +200,7 @@ TEST_CASE("green: sizes apart by 10 and 100 part without overlap") {
         options.distribution = parse_distribution(text, 0.0);
         const State state = packed(options);
         CHECK(close(relative_density(state), 0.43, 1e-13));
-        CHECK(largest_overlap(state, 1.0 / 1.01) < 1.1e-5);
+        CHECK(max_overlap(state, 1.0 / 1.01) < 1.1e-5);
     }
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("green: one and few particles") {
     for (const std::int64_t particles : {1, 2, 3, 8}) {
         const State state = packed(few(particles));
         CHECK(close(relative_density(state), 0.43, 1e-13));
-        CHECK(largest_overlap(state, 1.0 / 1.01) < 1.1e-5);
+        CHECK(max_overlap(state, 1.0 / 1.01) < 1.1e-5);
     }
     // One sphere in a cube touches its own images above pi/6 = 0.52; just above, all its overlap comes from the swell.
     PackingOptions options = few(1);

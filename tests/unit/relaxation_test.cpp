@@ -33,7 +33,7 @@ TEST_CASE("relaxation: every pair parts in the same steps, whatever its sizes, a
         const Vec3 before = centre();
         const Relaxation end = relax(box_of(Vec3::Constant(1e-6)), radius, position, {});
         CHECK(end.finished);
-        CHECK(end.largest_overlap <= 1e-5);
+        CHECK(end.max_overlap <= 1e-5);
         CHECK((position[1] - position[0]).norm() >= (1.0 - 1e-5) * reach);
         CHECK((centre() - before).norm() < 1e-14 * reach * end.steps);
         CHECK((position[1] - position[0]).tail<2>().norm() == 0.0);
@@ -49,7 +49,7 @@ TEST_CASE("relaxation: steps of a pair follow the damped oscillator h'' = -2 h -
     std::vector<Vec3> position{{4.0, 5.0, 5.0}, {5.8, 5.0, 5.0}};
     std::vector<double> overlap;
     relax(box_of(Vec3::Constant(10.0)), radius, position, {.damping = damping}, {},
-          [&](const Relaxation& now) { overlap.push_back(now.largest_overlap / 0.1); });
+          [&](const Relaxation& now) { overlap.push_back(now.max_overlap / 0.1); });
     for (std::size_t step = 0; step + 1 < overlap.size(); ++step) {
         const double t = 0.2 * static_cast<double>(step);
         CAPTURE(step);
@@ -69,7 +69,7 @@ TEST_CASE("relaxation: a row too long for its box jams with the overlap shared e
     CHECK(end.jammed);
     CHECK_FALSE(end.finished);
     CHECK(end.contacts == 4);
-    CHECK(end.largest_overlap == relative(0.125, 1e-3));
+    CHECK(end.max_overlap == relative(0.125, 1e-3));
     CHECK(end.mean_overlap == relative(0.125, 1e-9));
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("relaxation: a stop request ends it, and the most steps do") {
     int asked = 0;
     CHECK_THROWS_AS(relax(box, radius, position, {}, [&] { return ++asked == 3; }), Interrupted);
     CHECK(asked == 3);
-    const Relaxation end = relax(box, radius, position, {.most_steps = 1});
+    const Relaxation end = relax(box, radius, position, {.max_steps = 1});
     CHECK(end.steps == 1);
     CHECK_FALSE(end.finished);
     CHECK_FALSE(end.jammed);

@@ -41,14 +41,14 @@ constexpr const char* examples =
 
 
 /// Errors of moduli smaller than this share of them are those of a computed straight line and say nothing about the points.
-constexpr double least_error = 1e-6;
+constexpr double min_error = 1e-6;
 
 enum class Weights { automatic, errors, equal };
 
 /// Whether the points are weighted by their errors.
 bool weighted(const Points& points, Weights weights) {
     if (weights == Weights::equal) return false;
-    const double least = weights == Weights::errors ? 0.0 : least_error;
+    const double least = weights == Weights::errors ? 0.0 : min_error;
     for (std::size_t point = 0; point < points.error.size(); ++point) {
         if (points.error[point] > least * points.modulus[point]) continue;
         if (weights == Weights::errors)
@@ -89,7 +89,7 @@ void add_band(Json& result, const physics::PorosityLaw& law, const analysis::Fit
         modulus.push_back(value);
         for (std::size_t curve = 0; curve < physics::reference_curves().size(); ++curve) {
             const physics::ReferenceCurve& reference = physics::reference_curves()[curve];
-            curves[curve]["young_modulus"].push_back(porosity <= reference.largest_porosity ? Json(reference.modulus(porosity))
+            curves[curve]["young_modulus"].push_back(porosity <= reference.max_porosity ? Json(reference.modulus(porosity))
                                                                                             : Json());
         }
         if (!fit.covariance) continue;

@@ -26,7 +26,7 @@ void report(const bonding::Summary& summary, const bonding::Options& options, co
         warn(summary.clamped, " of ", summary.pairs, " bonds are clamped to the radius of their smaller particle; a volume of ",
              summary.lost_volume, " m3 does not fit into them");
     if (summary.stopped > 0)
-        warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::smallest_share, " % of their radius");
+        warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::min_share, " % of their radius");
     if (options.drop_thin && summary.thin > 0 && options.method != bonding::Method::necks)
         warn(summary.thin, " thin bonds are left out, and ", summary.dropped_volume, " m3 of solid with them");
     if (!summary.fills)

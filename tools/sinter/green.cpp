@@ -33,13 +33,13 @@ Material material_named(const std::string& name) {
 
 /// Shows how far a relaxation has come: overlaps fall roughly exponentially.
 void show(cli::Progress& progress, const Relaxation& relaxation) {
-    const double end = RelaxationOptions().largest_overlap;
-    const double now = std::clamp(relaxation.largest_overlap, end, 1.0);
+    const double end = RelaxationOptions().max_overlap;
+    const double now = std::clamp(relaxation.max_overlap, end, 1.0);
     progress.show(std::log(now) / std::log(end), "relaxing, " + std::to_string(relaxation.contacts) + " overlaps");
     if (relaxation.steps % steps_between_details == 0)
         progress.detail({{"step", relaxation.steps},
                          {"overlaps", relaxation.contacts},
-                         {"largest_overlap_ratio", relaxation.largest_overlap},
+                         {"largest_overlap_ratio", relaxation.max_overlap},
                          {"mean_overlap_ratio", relaxation.mean_overlap}});
 }
 

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double validity_limit = 0.9;  // relative density above which grain growth, which is not modelled, matters
 constexpr double full_density = 1.0;    // that no body passes
-constexpr double most_contacts = 60.0;  // mean coordination number; a body without pores has about 14
-constexpr double most_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
+constexpr double max_contacts = 60.0;  // mean coordination number; a body without pores has about 14
+constexpr double max_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
 
 using sintering::triple;
 
@@ -151,7 +151,7 @@ class Sintered {
         progressed_.newton += record.newton;
         progressed_.conjugate_gradients += record.conjugate_gradients;
         progressed_.converged = progressed_.converged && record.converged;
-        if (record.contacts.coordination_number > most_contacts || record.contacts.mean_overlap_ratio > most_overlap)
+        if (record.contacts.coordination_number > max_contacts || record.contacts.mean_overlap_ratio > max_overlap)
             throw Error("at " + Json(record.time).dump() + " s particles have " + Json(record.contacts.coordination_number).dump() +
                         " contacts and overlap by " + Json(record.contacts.mean_overlap_ratio).dump() +
                         " of their radii in the mean: the packing has shrunk into itself in a box that stays empty");
