@@ -34,7 +34,7 @@ Checkpoint::Checkpoint(const Options& options, Json arguments)
     : file_(options.checkpoint), resume_(options.resume), interval_(options.checkpoint_every), arguments_(std::move(arguments)) {}
 
 std::optional<Progressed> Checkpoint::read() {
-    if (!wanted() || !resume_ || !std::filesystem::exists(file_)) return std::nullopt;
+    if (!requested() || !resume_ || !std::filesystem::exists(file_)) return std::nullopt;
     io::Input input({file_});
     checkpoint_ = {.state = std::move(*input.next_state()), .numbers = {}};
     const Json carried = io::carried_json(checkpoint_->state.other, file_);
@@ -57,7 +57,7 @@ std::optional<Progressed> Checkpoint::read() {
     }
 }
 
-bool Checkpoint::due() const { return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= interval_; }
+bool Checkpoint::due() const { return requested() && std::chrono::duration<double>(Clock::now() - last_).count() >= interval_; }
 
 void Checkpoint::write(sintering::Checkpoint checkpoint, const Progressed& progressed) {
     Json carried = io::carried_json(checkpoint.state.other, file_);
@@ -80,7 +80,7 @@ void Checkpoint::write(sintering::Checkpoint checkpoint, const Progressed& progr
 }
 
 void Checkpoint::remove() const {
-    if (wanted()) std::filesystem::remove(file_);
+    if (requested()) std::filesystem::remove(file_);
 }
 
 }  // namespace kiln::sinter

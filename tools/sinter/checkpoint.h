@@ -29,7 +29,7 @@ class Checkpoint {
    public:
     Checkpoint(const Options& options, Json arguments);
 
-    bool wanted() const { return !file_.empty(); }
+    bool requested() const { return !file_.empty(); }
 
     /// What the file says, if --resume was given and the file is there. Throws Error where other options were given then.
     std::optional<Progressed> read();

@@ -29,7 +29,7 @@ int sinter_states(int argc, char** argv) {
 
     io::Input input(common.files);
     const auto resumption = [&](std::uint64_t sinter::Progressed::*bytes) -> std::optional<io::Resumption> {
-        if (!checkpoint.wanted()) return std::nullopt;
+        if (!checkpoint.requested()) return std::nullopt;
         return io::Resumption{options.resume, earlier ? (*earlier).*bytes : 0};
     };
     io::Output states(common.output, common.text, resumption(&sinter::Progressed::output_bytes));

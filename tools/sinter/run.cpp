@@ -12,7 +12,7 @@
 #include "sintering/implicit_sintering.h"
 #include "sintering/viscosity.h"
 #include "io/state_io.h"
-#include "tools/sinter/wanted.h"
+#include "tools/sinter/targets.h"
 
 namespace kiln::sinter {
 
@@ -87,12 +87,12 @@ class Sintered {
           options_(options),
           sinks_(sinks),
           progressed_(std::move(progressed)),
-          wanted_(options, kiln::relative_density(state), state.time),
+          targets_(options, kiln::relative_density(state), state.time),
           method_(method_of(std::move(state), options)) {}
 
     void take_up(const sintering::Checkpoint& checkpoint) {
         method_->restore(checkpoint);
-        wanted_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
+        targets_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
     }
 
     /// What is to be known before the first step.
@@ -107,14 +107,14 @@ class Sintered {
 
     /// Steps to the end; false if a stop was requested on the way: the step that it interrupts is not taken.
     bool run() {
-        while (!wanted_.done(method_->time()) && !full()) {
+        while (!targets_.done(method_->time()) && !full()) {
             try {
                 step();
             } catch (const Interrupted&) {
-                if (!sinks_.checkpoint.wanted()) write_state(last_summary_, false);
+                if (!sinks_.checkpoint.requested()) write_state(last_summary_, false);
             }
             if (cli::stop_requested()) {
-                if (sinks_.checkpoint.wanted()) write_checkpoint(false);
+                if (sinks_.checkpoint.requested()) write_checkpoint(false);
                 return false;
             }
             if (sinks_.checkpoint.due()) write_checkpoint(false);
@@ -123,10 +123,10 @@ class Sintered {
             progressed_.converged = false;
             warn("the body is fully dense at " + Json(method_->time()).dump() +
                         " s, which ends the run: this model has no pores that close");
-        } else if (wanted_.densities_left()) {
+        } else if (targets_.densities_left()) {
             progressed_.converged = false;
             warn("the schedule ends at a relative density of " + Json(method_->relative_density()).dump() +
-                        ", short of the required " + Json(wanted_.next_density()).dump());
+                        ", short of the required " + Json(targets_.next_density()).dump());
         }
         return true;
     }
@@ -146,8 +146,8 @@ class Sintered {
     bool full() const { return method_->relative_density() >= full_density * (1.0 - same_density); }
 
     void step() {
-        const double density = method_->relative_density(), time_goal = wanted_.next_time(method_->time());
-        const sintering::StepRecord record = method_->advance(time_goal, std::min(wanted_.next_density(), full_density));
+        const double density = method_->relative_density(), time_goal = targets_.next_time(method_->time());
+        const sintering::StepRecord record = method_->advance(time_goal, std::min(targets_.next_density(), full_density));
         progressed_.newton += record.newton;
         progressed_.conjugate_gradients += record.conjugate_gradients;
         progressed_.converged = progressed_.converged && record.converged;
@@ -160,11 +160,11 @@ class Sintered {
         sinks_.progress.detail(summary);
         if (density <= validity_limit && record.relative_density > validity_limit)
             warn("above a relative density of 0.9 grains grow, which this model leaves out");
-        sinks_.progress.show(wanted_.fraction(record.relative_density, record.time),
+        sinks_.progress.show(targets_.fraction(record.relative_density, record.time),
                              "relative density " + Json(std::round(1e4 * record.relative_density) / 1e4).dump());
         // A signal that comes after the last look at it: this step's state is the last.
-        const bool last_of_all = cli::stop_requested() && !sinks_.checkpoint.wanted();
-        if (wanted_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
+        const bool last_of_all = cli::stop_requested() && !sinks_.checkpoint.requested();
+        if (targets_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
     }
 
     /// reported: with what --report asks for.
@@ -188,7 +188,7 @@ class Sintered {
     const Options& options_;
     const Sinks& sinks_;
     Progressed progressed_;
-    Wanted wanted_;
+    Targets targets_;
     Json last_summary_ = Json::object();
     std::unique_ptr<sintering::SinteringMethod> method_;
 };
@@ -205,15 +205,15 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
         if (earlier && number < earlier->document) return true;
         const bool taken_up = earlier && number == earlier->document;
         Progressed progressed = taken_up ? *earlier : Progressed{.document = number, .fingerprint = "", .converged = converged};
-        if (sinks.checkpoint.wanted()) progressed.fingerprint = fingerprint(state);
+        if (sinks.checkpoint.requested()) progressed.fingerprint = fingerprint(state);
         if (taken_up && progressed.fingerprint != earlier->fingerprint) throw Error("the checkpoint is of another input");
         last = std::make_unique<Sintered>(std::move(state), place, options, sinks, progressed);
         if (taken_up) last->take_up(sinks.checkpoint.found());
         last->warn_of_start();
         const bool whole = last->run();
         converged = last->progressed().converged;
-        interrupted = !whole && sinks.checkpoint.wanted();
-        return whole && (sinks.checkpoint.wanted() || !cli::stop_requested());
+        interrupted = !whole && sinks.checkpoint.requested();
+        return whole && (sinks.checkpoint.requested() || !cli::stop_requested());
     });
     if (interrupted) {
         sinks.progress.clear();
@@ -221,7 +221,7 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
         return cli::interrupted;
     }
     sinks.progress.clear();
-    if (last && sinks.checkpoint.wanted()) last->write_checkpoint(true);
+    if (last && sinks.checkpoint.requested()) last->write_checkpoint(true);
     if (sinks.history) sinks.history->commit();
     sinks.states.commit();
     sinks.checkpoint.remove();

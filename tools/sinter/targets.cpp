@@ -1,5 +1,5 @@
-// wanted.cpp: densities and times, taken off as they are reached.
-#include "tools/sinter/wanted.h"
+// targets.cpp: densities and times, taken off as they are reached.
+#include "tools/sinter/targets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double same_time = 1e-12;    // relative
 
 }  // namespace
 
-Wanted::Wanted(const Options& options, double density, double time)
+Targets::Targets(const Options& options, double density, double time)
     : densities_(options.densities),
       times_(options.times),
       every_(options.every),
@@ -36,19 +36,19 @@ Wanted::Wanted(const Options& options, double density, double time)
     last_time_ = times_.empty() ? end_ : times_.back();
 }
 
-bool Wanted::done(double time) const {
+bool Targets::done(double time) const {
     return (densities_.empty() && times_.empty()) || (times_.empty() && time >= end_ * (1.0 - same_time));
 }
 
-double Wanted::next_density() const { return densities_.empty() ? endless : densities_.front(); }
+double Targets::next_density() const { return densities_.empty() ? endless : densities_.front(); }
 
-double Wanted::next_time(double now) const {
+double Targets::next_time(double now) const {
     const double listed = times_.empty() ? end_ : times_.front();
     return every_ > 0.0 ? std::min(listed, start_ + every_ * (std::floor((now - start_) / every_ * (1.0 + same_time)) + 1.0))
                         : listed;
 }
 
-bool Wanted::reached(double density, double time, double time_goal) {
+bool Targets::reached(double density, double time, double time_goal) {
     bool due = time >= time_goal * (1.0 - same_time);
     while (!densities_.empty() && density >= densities_.front() * (1.0 - same_density)) {
         densities_.erase(densities_.begin());
@@ -58,7 +58,7 @@ bool Wanted::reached(double density, double time, double time_goal) {
     return due;
 }
 
-double Wanted::fraction(double density, double time) const {
+double Targets::fraction(double density, double time) const {
     if (last_density_ > first_density_) return (density - first_density_) / (last_density_ - first_density_);
     return (time - start_) / (last_time_ - start_);
 }

@@ -1,4 +1,4 @@
-// wanted.h: the densities and times that a run still has to write states at.
+// targets.h: the densities and times that a run still has to write states at.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@ namespace kiln::sinter {
 
 constexpr double same_density = 1e-6;  // relative; what is nearer counts as reached
 
-/// What is still wanted: ascending densities and times, with the next multiple of --every between.
-class Wanted {
+/// What is still to be reached: ascending densities and times, with the next multiple of --every between.
+class Targets {
    public:
     /// density, time: those of the state at the start of its run. Throws Error for what lies behind them.
-    Wanted(const Options& options, double density, double time);
+    Targets(const Options& options, double density, double time);
 
     /// True once everything has been reached, or the schedule is over.
     bool done(double time) const;
