@@ -148,7 +148,7 @@ void Strokes::keep_peak() {
         throw Error("at the largest force the bar lies on one support only; a moving punch (--punch-velocity) is too fast for it");
 }
 
-/// Down until the punch stands still at about the wanted deflection: it turns early enough to stop there.
+/// Down until the punch stands still at about the required deflection: it turns early enough to stop there.
 void Strokes::load() {
     const double limit = motion_.travel() + longest_travel * deflection_ + 0.5 * result_.specimen.size[2];
     int next = 1;
@@ -162,7 +162,7 @@ void Strokes::load() {
         const double stopping = 0.5 * punch_velocity_ * punch_velocity_ / velocity_ * period_;
         turning = turning || (here.punch > 0.0 && share * (1.0 + stopping / here.punch) >= 1.0);
         if (here.punch + seat_ > limit)
-            throw Error("the punch went through the bar's height without the wanted deflection or force");
+            throw Error("the punch went through the bar's height without the required deflection or force");
         advance(turning ? -1.0 : 1.0, 0.5 * share);
     }
     keep_peak();

@@ -6,7 +6,7 @@
 
 namespace kiln::bending {
 
-/// Drives the punch down until the wanted deflection or force, and up until its force is gone, as many times as there are cycles.
+/// Drives the punch down until the required deflection or force, and up until its force is gone, as many times as there are cycles.
 /// Throws Error where the bar cannot be tested (see place_fixture, find_contacts) and where its material has no density.
 Result bend_dynamic(State state, const Options& options, const Watch& watch = {});
 

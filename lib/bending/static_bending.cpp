@@ -29,27 +29,27 @@ Level loaded(Equilibria& levels, double force, bool exact, const Options& option
     return solved(1.0);
 }
 
-/// Equilibrium at the greatest force: the one given, or the one that gives the deflection wanted.
+/// Equilibrium at the greatest force: the one given, or the one that gives the deflection required.
 Level peak_level(Equilibria& levels, const Options& options, Result& result) {
     if (options.max_force > 0.0) return loaded(levels, options.max_force, true, options, result);
-    const double wanted = max_deflection_of(result.specimen, options);
+    const double required = max_deflection_of(result.specimen, options);
     double force = expected_force(result.specimen, result.fixture, options);
     Level level = loaded(levels, force, false, options, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
     double slope = level.point.force / level.point.deflection;
     bool exact = false;
     for (int trial = 0; trial < max_trials; ++trial) {
-        const double missing = wanted - level.point.deflection;
-        if (exact && std::abs(missing) <= deflection_tolerance * wanted) return level;
+        const double missing = required - level.point.deflection;
+        if (exact && std::abs(missing) <= deflection_tolerance * required) return level;
         force = level.point.force + slope * missing;
-        if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the wanted deflection");
+        if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the required deflection");
         const Level before = level;
-        const bool was_exact = std::exchange(exact, std::abs(missing) <= std::sqrt(deflection_tolerance) * wanted);
+        const bool was_exact = std::exchange(exact, std::abs(missing) <= std::sqrt(deflection_tolerance) * required);
         level = loaded(levels, force, exact, options, result);
         const double covered = level.point.deflection - before.point.deflection;
         if (exact == was_exact && covered != 0.0) slope = (level.point.force - before.point.force) / covered;
     }
-    throw Error("no punch force was found that gives the wanted deflection");
+    throw Error("no punch force was found that gives the required deflection");
 }
 
 /// Greatest gap between the work of the punch and the energy stored and lost, from the first level to each, over the most stored.

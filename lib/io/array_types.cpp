@@ -14,15 +14,15 @@ constexpr std::array names{"f8", "f4", "i8", "i4", "i2", "i1", "u1"};
 static_assert(names.size() == std::variant_size_v<Array::Data>);
 
 template <std::size_t Index = 0>
-bool set_alternative(Array::Data& data, std::size_t wanted) {
+bool set_alternative(Array::Data& data, std::size_t required) {
     if constexpr (Index == names.size()) {
         return false;
     } else {
-        if (Index == wanted) {
+        if (Index == required) {
             data.emplace<Index>();
             return true;
         }
-        return set_alternative<Index + 1>(data, wanted);
+        return set_alternative<Index + 1>(data, required);
     }
 }
 

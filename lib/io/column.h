@@ -26,8 +26,8 @@ template <typename Value>
 std::vector<Value> values_of(Array&& array, const std::string& where, std::size_t rows, std::size_t width) {
     auto* values = std::get_if<std::vector<Value>>(&array.data);
     if (!values) {
-        const Array wanted{{}, std::vector<Value>()};
-        throw Error(where + " has type " + type_name(array) + ", expected " + type_name(wanted));
+        const Array required{{}, std::vector<Value>()};
+        throw Error(where + " has type " + type_name(array) + ", expected " + type_name(required));
     }
     const std::vector<std::size_t> shape = width == 1 ? std::vector<std::size_t>{rows} : std::vector<std::size_t>{rows, width};
     if (array.shape != shape) throw Error(where + " has shape " + shape_text(array.shape) + ", expected " + shape_text(shape));

@@ -51,8 +51,8 @@ std::size_t value_width(const Array& array) {
 
 template <typename Value>
 Value value_from(const Json& item, const std::string& where, std::size_t index) {
-    const auto refuse = [&](const std::string& wanted) -> void {
-        fail(where, "value " + std::to_string(index) + " is " + shown(item) + " where " + wanted + " is needed");
+    const auto refuse = [&](const std::string& required) -> void {
+        fail(where, "value " + std::to_string(index) + " is " + shown(item) + " where " + required + " is needed");
     };
     if constexpr (std::is_floating_point_v<Value>) {
         if (!item.is_number()) refuse("a number");
@@ -71,14 +71,14 @@ Value value_from(const Json& item, const std::string& where, std::size_t index) 
 
 /// An array whose values stand in the header as "data".
 void read_text_data(Array& array, const Json& data, const std::string& where) {
-    const std::size_t wanted = value_count(array.shape);
-    if (!data.is_array() || data.size() != wanted)
+    const std::size_t required = value_count(array.shape);
+    if (!data.is_array() || data.size() != required)
         fail(where, "has " + std::to_string(data.is_array() ? data.size() : 0) + " values of data where its shape requires " +
-                        std::to_string(wanted));
+                        std::to_string(required));
     std::visit(
         [&](auto& values) {
             using Value = typename std::decay_t<decltype(values)>::value_type;
-            values.reserve(wanted);
+            values.reserve(required);
             for (const Json& item : data) values.push_back(value_from<Value>(item, where, values.size()));
         },
         array.data);

@@ -32,7 +32,7 @@ class DocumentReader {
     DocumentReader(std::FILE* file, std::string name);
 
     /// Fills the next document; false at the end of the stream.
-    /// Throws Error that names the file, the document and what was wanted: truncation, bad JSON, a repeated key, unknown array
+    /// Throws Error that names the file, the document and what was required: truncation, bad JSON, a repeated key, unknown array
     /// type, shape or size that disagree, a payload longer than the file. Memory taken never runs ahead of the bytes that have
     /// arrived.
     /// "particles" or "bonds" that are no objects stay in the header: only a dem-state says that they must be arrays.

@@ -21,8 +21,8 @@ std::optional<double> quantity(const std::string& word, Dimension dimension) {
     }
 }
 
-[[noreturn]] void refuse(const std::string& word, const std::string& wanted) {
-    throw TextError((word.empty() ? "it ends" : "'" + word + "' stands") + " where " + wanted +
+[[noreturn]] void refuse(const std::string& word, const std::string& required) {
+    throw TextError((word.empty() ? "it ends" : "'" + word + "' stands") + " where " + required +
                     " is required, as in \"25C 10K/min 1200C 1h 10K/min 25C\"");
 }
 

@@ -80,12 +80,12 @@ bool ContactProblem::settle(const PunchLoad& load, double tolerance) {
         contacts_.stick(load.force);
         minimise(space_, contacts_, load, freedoms_);
     }
-    const double wanted = std::min(limit_tolerance, limit_share * tolerance) * load.force;
+    const double required = std::min(limit_tolerance, limit_share * tolerance) * load.force;
     double least = HUGE_VAL;
     for (int pass = 0, idle = 0; pass < max_passes && idle < idle_passes; ++pass) {
         const double change = contacts_.follow(freedoms_);
         if (pass > 0) {  // the first change is that of the load
-            if (change <= wanted) return true;
+            if (change <= required) return true;
             idle = change < least ? 0 : idle + 1;
             least = std::min(least, change);
         }

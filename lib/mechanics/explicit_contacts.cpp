@@ -68,9 +68,9 @@ Vec3 ExplicitContacts::friction_force(const Touch& touch, const Vec3& slide, phy
     loss_ += before.energy() - spring.energy();
     spring.displacement += slide;
     spring.displacement -= spring.displacement.dot(touch.normal) * touch.normal;
-    const double wanted = spring.displacement.norm();
+    const double required = spring.displacement.norm();
     spring.displacement = physics::elastic_displacement(spring.displacement, stiffness, limit);
-    loss_ += limit * (wanted - spring.displacement.norm());
+    loss_ += limit * (required - spring.displacement.norm());
     energy_ += spring.energy();
     return stiffness * spring.displacement;
 }

@@ -71,8 +71,8 @@ double TangentialContacts::lost(const Eigen::VectorXd& slide) const {
     double sum = lost_;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         const Contact& contact = contacts_[c];
-        const Vec3 wanted = displacement(contact, row_of(slide, c));
-        const double slip = wanted.norm() - physics::elastic_displacement(wanted, contact.stiffness, contact.limit).norm();
+        const Vec3 required = displacement(contact, row_of(slide, c));
+        const double slip = required.norm() - physics::elastic_displacement(required, contact.stiffness, contact.limit).norm();
         sum += contact.spring.energy() - physics::TangentialSpring{contact.stiffness, contact.carried}.energy();
         // The limit grew or fell on the way.
         sum += 0.5 * (contact.last_limit + contact.limit) * slip;

@@ -1,4 +1,4 @@
-// packing.cpp: from random points to a green body at exactly the wanted relative density.
+// packing.cpp: from random points to a green body at exactly the required relative density.
 #include "packing/packing.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double curve_cells = 1 << 20;  // along the longest edge: so many that hardly two particles share a cell
 
-/// Box with its origin at zero and the edges in the wanted ratio, in which solid (m3) has the relative density.
+/// Box with its origin at zero and the edges in the required ratio, in which solid (m3) has the relative density.
 Box box_for(const std::array<double, 3>& aspect, double solid, double density) {
     Box box;
     const Vec3 edges(aspect[0], aspect[1], aspect[2]);
@@ -80,10 +80,10 @@ State pack(const PackingOptions& options, const StopRequest& stop, const std::fu
     if (options.method == Method::affine && !options.compact_to)
         throw Error("an affine packing requires the density to compact to");
     State state = random_state(options, soft ? options.density : options.density / std::pow(1.0 + options.swell, 3));
-    RelaxationOptions wanted;
-    wanted.damping = options.damping;
-    if (soft) wanted.mean_overlap = options.mean_overlap;
-    check_relaxed(options, relax(state.box, state.particles.radius, state.particles.position, wanted, stop, progress));
+    RelaxationOptions required;
+    required.damping = options.damping;
+    if (soft) required.mean_overlap = options.mean_overlap;
+    check_relaxed(options, relax(state.box, state.particles.radius, state.particles.position, required, stop, progress));
     scale_to(state, options, options.compact_to.value_or(options.density));
     state.particles = along_curve(state.particles, state.box);
     std::iota(state.particles.id.begin(), state.particles.id.end(), std::int64_t{0});

@@ -13,7 +13,7 @@ namespace kiln::packing {
 enum class Method {
     loose,   // relaxed until no spheres overlap, then all lengths shrunk by the swell
     affine,  // loose, then all lengths shrunk to a higher density
-    soft,    // relaxed only until the mean overlap has fallen to a wanted value
+    soft,    // relaxed only until the mean overlap has fallen to a required value
 };
 
 struct PackingOptions {

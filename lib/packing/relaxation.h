@@ -24,7 +24,7 @@ struct Relaxation {
     double max_overlap = 0.0;  // ratio
     double mean_overlap = 0.0;     // ratio, mean of the contacts
     bool jammed = false;           // the forces on every particle balance: nothing moves any more
-    bool finished = false;         // one of the two wanted overlaps was reached
+    bool finished = false;         // one of the two required overlaps was reached
 };
 
 /// Moves the centres (m) from rest. The acceleration by a contact is 2 m_j/(m_i + m_j) h along the contact normal, with m = r^3:

@@ -31,7 +31,7 @@ constexpr std::size_t max_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
 constexpr double landing_closeness = 2e-3;  // of a step's change of density, within which scaling its motion is exact enough
-constexpr int max_landings = 40;           // attempts to end a step at a wanted density
+constexpr int max_landings = 40;           // attempts to end a step at a required density
 constexpr int max_rejections = 20;         // of one step
 
 }  // namespace

@@ -114,9 +114,9 @@ double Kinetics::equivalent(double from, double until) const {
     return schedule_.integral(from, until, [&](double temperature) { return diffusion(fastest_row_, temperature) / fastest_; });
 }
 
-double Kinetics::after(double from, double wanted) const {
-    if (times_.empty()) return from + wanted;
-    double low = from, left = wanted;  // what is left of the wanted equivalent time at `low`
+double Kinetics::after(double from, double required) const {
+    if (times_.empty()) return from + required;
+    double low = from, left = required;  // what is left of the required equivalent time at `low`
     for (auto next = std::upper_bound(times_.begin(), times_.end(), from); next != times_.end(); ++next) {
         const double passes = equivalent(low, *next);
         if (passes < left) {

@@ -243,7 +243,7 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
         for (double& component : unbalanced_.displacement) component = -component;
         const linalg::CgProgress linear = std::visit([&](auto& solver) {
             if (iteration < max_factorisations) solver->factorise(branch_);
-            // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are wanted.
+            // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are required.
             return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
                 throw_if_stopped(settings_.stop);
                 const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;

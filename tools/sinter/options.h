@@ -17,8 +17,8 @@ enum class SinterMethod { implicit, explicit_steps };
 enum class Report { none, viscosity };
 
 struct Options {
-    std::vector<double> densities;  // relative, wanted states
-    std::vector<double> times;      // s, wanted states
+    std::vector<double> densities;  // relative, required states
+    std::vector<double> times;      // s, required states
     double every = 0.0;             // s, between states; 0: none
     double temperature = 0.0;       // K, of a hold; 0: a schedule is given
     std::string schedule;
