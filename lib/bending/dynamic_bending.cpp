@@ -1,4 +1,4 @@
-// dynamic_bending.cpp: strokes of the punch, sampling of the curve and the balance of energy of the dynamic test.
+// dynamic_bending.cpp: punch of the punch, sampling of the curve and the balance of energy of the dynamic test.
 #include "bending/dynamic_bending.h"
 
 #include <algorithm>
@@ -41,9 +41,9 @@ std::vector<double> masses(const Specimen& specimen, double scaling) {
 double beam_period(double stiffness, double mass) { return 2.0 / std::numbers::pi * std::sqrt(48.0 * mass / stiffness); }
 
 /// The test from the first touch on.
-class Strokes {
+class PunchMotion {
    public:
-    Strokes(Result& result, const Options& options, const Watch& watch)
+    PunchMotion(Result& result, const Options& options, const Watch& watch)
         : result_(result),
           options_(options),
           watch_(watch),
@@ -91,7 +91,7 @@ class Strokes {
     int cycle_ = 0;
 };
 
-mechanics::ExplicitMotion Strokes::make_motion() {
+mechanics::ExplicitMotion PunchMotion::make_motion() {
     const Specimen& specimen = result_.specimen;
     const double stiffness = estimated_stiffness(specimen, result_.fixture), force = stiffness * deflection_;
     const std::vector<double> mass = masses(specimen, options_.mass_scaling);
@@ -112,7 +112,7 @@ mechanics::ExplicitMotion Strokes::make_motion() {
 }
 
 /// Some steps with the punch going down (heading 1) or up (-1); it takes one period of the bar to turn from rest to full speed.
-void Strokes::advance(double heading, double share) {
+void PunchMotion::advance(double heading, double share) {
     const double dt = motion_.time_step(), change = velocity_ * dt / period_;
     for (int step = 0; step < steps_between_looks; ++step) {
         punch_velocity_ += std::clamp(heading * velocity_ - punch_velocity_, -change, change);
@@ -125,13 +125,13 @@ void Strokes::advance(double heading, double share) {
     watch_.at((cycle_ + std::clamp(share, 0.0, 1.0)) / options_.cycles);
 }
 
-void Strokes::record() {
+void PunchMotion::record() {
     result_.curve.push_back(now());
     const mechanics::MotionEnergy energy = motion_.energy();
     energy_gap_ = std::max(energy_gap_, std::abs(energy.work - energy.total()));
 }
 
-void Strokes::keep_peak() {
+void PunchMotion::keep_peak() {
     record();
     const double force = result_.curve.back().force;
     if (cycle_ > 0 && force <= result_.peak_force) return;
@@ -149,7 +149,7 @@ void Strokes::keep_peak() {
 }
 
 /// Down until the punch stands still at about the required deflection: it turns early enough to stop there.
-void Strokes::load() {
+void PunchMotion::load() {
     const double limit = motion_.travel() + longest_travel * deflection_ + 0.5 * result_.specimen.size[2];
     int next = 1;
     for (bool turning = false; !turning || punch_velocity_ > 0.0;) {
@@ -169,7 +169,7 @@ void Strokes::load() {
 }
 
 /// Up until the punch is free.
-void Strokes::unload() {
+void PunchMotion::unload() {
     const double peak = reached(result_.curve.back());
     int next = options_.points - 1;
     while (motion_.contacts().punch_force() > 0.0) {
@@ -187,8 +187,8 @@ void Strokes::unload() {
 
 Result bend_dynamic(State state, const Options& options, const Watch& watch) {
     Result result = prepare(std::move(state), options);
-    Strokes strokes(result, options, watch);
-    strokes.run();
+    PunchMotion punch(result, options, watch);
+    punch.run();
     add_warnings(result, options);
     return result;
 }

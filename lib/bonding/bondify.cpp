@@ -47,7 +47,7 @@ long double solid_volume(std::span<const double> radius, std::span<const double>
 }
 
 /// The bonds, thin ones included, with what there is to count about them.
-Bonds make_bonds(const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const Shrunk& shrunk, const Options& options,
+Bonds make_bonds(const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const ShrunkSpheres& shrunk, const Options& options,
                  Summary& summary) {
     Bonds bonds;
     bonds.volume = shrunk.volume;
@@ -94,7 +94,7 @@ double mean(std::span<const double> values) {
 Bonds shrink(State& state, const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const Options& options,
              Summary& summary, const Watch& watch) {
     Particles& particles = state.particles;
-    Shrunk shrunk = options.method == Method::exact
+    ShrunkSpheres shrunk = options.method == Method::exact
                         ? shrink_exactly(particles.radius, overlaps, options.sharing, watch)
                         : shrink_by_sweeps(particles.radius, overlaps, options.sharing, options.decrement, watch);
     summary.stopped = shrunk.stopped;

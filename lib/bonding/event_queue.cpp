@@ -71,7 +71,7 @@ class Shrinking {
         std::make_heap(events_.begin(), events_.end(), later);
     }
 
-    Shrunk run(const Watch& watch) {
+    ShrunkSpheres run(const Watch& watch) {
         for (std::size_t turn = 0; !events_.empty(); ++turn) {
             if (turn % turns_between_looks == 0)
                 watch.at(1.0 - static_cast<double>(events_.size()) / static_cast<double>(overlaps_.size()));
@@ -85,7 +85,7 @@ class Shrinking {
             event.s = std::max(s, now_);
             std::push_heap(events_.begin(), events_.end(), later);
         }
-        Shrunk result;
+        ShrunkSpheres result;
         result.volume = std::move(volume_);
         for (const Particle& particle : particles_) {
             result.radius.push_back(particle.intercept);
@@ -147,7 +147,7 @@ class Shrinking {
 
 }  // namespace
 
-Shrunk shrink_exactly(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, const Watch& watch) {
+ShrunkSpheres shrink_exactly(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, const Watch& watch) {
     return Shrinking(radius, overlaps, sharing).run(watch);
 }
 

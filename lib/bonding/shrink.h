@@ -24,7 +24,7 @@ enum class Sharing {
 /// A particle stops shrinking at this share of its radius; its partners then give alone.
 inline constexpr double min_share = 0.01;
 
-struct Shrunk {
+struct ShrunkSpheres {
     std::vector<double> radius;  // m, of every particle
     std::vector<double> volume;  // m3, given to every overlap
     std::size_t stopped = 0;     // particles that came down to min_share

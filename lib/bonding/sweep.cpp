@@ -23,9 +23,9 @@ void step(std::vector<double>& radius, std::span<const double> smallest, std::sp
 
 }  // namespace
 
-Shrunk shrink_by_sweeps(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, double decrement,
+ShrunkSpheres shrink_by_sweeps(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, double decrement,
                         const Watch& watch) {
-    Shrunk result{.radius{radius.begin(), radius.end()}, .volume = std::vector<double>(overlaps.size())};
+    ShrunkSpheres result{.radius{radius.begin(), radius.end()}, .volume = std::vector<double>(overlaps.size())};
     std::vector<double> smallest(radius.size()), given(radius.size());
     std::ranges::transform(radius, smallest.begin(), [](double r) { return min_share * r; });
     std::vector<std::int32_t> count(radius.size());

@@ -50,7 +50,7 @@ State make_packing(int side, unsigned seed) {
     return make_state(position, radius, side, true);
 }
 
-Shrunk shrink_line(const std::vector<double>& radius, const std::vector<Overlap>& overlaps, Sharing sharing = Sharing::pair) {
+ShrunkSpheres shrink_line(const std::vector<double>& radius, const std::vector<Overlap>& overlaps, Sharing sharing = Sharing::pair) {
     return shrink_exactly(radius, overlaps, sharing);
 }
 
@@ -79,7 +79,7 @@ std::vector<double> shrink_all(const State& state) {
 TEST_CASE("bondify: two equal spheres end with radius d/2 and a bond of what they lost") {
     for (const double scale : {1e-9, 1.0}) {
         const double radius = 50.0 * scale, distance = 90.0 * scale;
-        const Shrunk shrunk = shrink_line({radius, radius}, {{0, 1, distance}});
+        const ShrunkSpheres shrunk = shrink_line({radius, radius}, {{0, 1, distance}});
         CHECK(shrunk.radius[0] == relative(distance / 2.0, 1e-15));
         CHECK(shrunk.radius[1] == relative(distance / 2.0, 1e-15));
         CHECK(shrunk.volume[0] == relative(2.0 * (sphere(radius) - sphere(distance / 2.0)), 1e-13));
@@ -87,20 +87,20 @@ TEST_CASE("bondify: two equal spheres end with radius d/2 and a bond of what the
 }
 
 TEST_CASE("bondify: two unequal spheres lose the same length") {
-    const Shrunk shrunk = shrink_line({50.0, 30.0}, {{0, 1, 72.0}});
+    const ShrunkSpheres shrunk = shrink_line({50.0, 30.0}, {{0, 1, 72.0}});
     CHECK(shrunk.radius[0] == relative(46.0, 1e-12));
     CHECK(shrunk.radius[1] == relative(26.0, 1e-12));
     CHECK(shrunk.volume[0] == relative(sphere(50.0) - sphere(46.0) + sphere(30.0) - sphere(26.0), 1e-12));
 }
 
 TEST_CASE("bondify: three in a row, the middle one shrinks twice as fast") {
-    const Shrunk pair = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 94.0}, {1, 2, 94.0}});
+    const ShrunkSpheres pair = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 94.0}, {1, 2, 94.0}});
     CHECK(pair.radius[0] == relative(48.0, 1e-12));
     CHECK(pair.radius[1] == relative(46.0, 1e-12));
     CHECK(pair.volume[0] == relative(sphere(50.0) - sphere(48.0) + (sphere(50.0) - sphere(46.0)) / 2.0, 1e-12));
     CHECK(pair.volume[1] == relative(pair.volume[0], 1e-12));
 
-    const Shrunk particle = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 94.0}, {1, 2, 94.0}}, Sharing::particle);
+    const ShrunkSpheres particle = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 94.0}, {1, 2, 94.0}}, Sharing::particle);
     CHECK(particle.radius[0] == relative(47.0, 1e-12));
     CHECK(particle.radius[1] == relative(47.0, 1e-12));
     CHECK(particle.volume[0] == relative(1.5 * (sphere(50.0) - sphere(47.0)), 1e-12));
@@ -108,7 +108,7 @@ TEST_CASE("bondify: three in a row, the middle one shrinks twice as fast") {
 
 TEST_CASE("bondify: after the first separation the other pair goes on alone, by hand") {
     // Overlaps 3 and 9: the first ends at s = 1 with radii 49, 48, 49; the second has 6 left, 3 from each: 46 and 45.
-    const Shrunk shrunk = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 97.0}, {1, 2, 91.0}});
+    const ShrunkSpheres shrunk = shrink_line({50.0, 50.0, 50.0}, {{0, 1, 97.0}, {1, 2, 91.0}});
     CHECK(shrunk.radius[0] == relative(49.0, 1e-12));
     CHECK(shrunk.radius[1] == relative(45.0, 1e-12));
     CHECK(shrunk.radius[2] == relative(46.0, 1e-12));

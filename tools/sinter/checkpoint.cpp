@@ -33,7 +33,7 @@ std::string fingerprint(const State& state) {
 Checkpoint::Checkpoint(const Options& options, Json arguments)
     : file_(options.checkpoint), resume_(options.resume), interval_(options.checkpoint_every), arguments_(std::move(arguments)) {}
 
-std::optional<Progressed> Checkpoint::read() {
+std::optional<RunState> Checkpoint::read() {
     if (!requested() || !resume_ || !std::filesystem::exists(file_)) return std::nullopt;
     io::Input input({file_});
     checkpoint_ = {.state = std::move(*input.next_state()), .numbers = {}};
@@ -44,7 +44,7 @@ std::optional<Progressed> Checkpoint::read() {
         checkpoint_->numbers = carried[numbers_key].get<sintering::Numbers>();
         if (own.at("arguments") != arguments_)
             throw Error(file_ + ": is of a run with other options, " + own.at("arguments").dump() + "; delete it to begin anew");
-        return Progressed{.document = own.at("document"),
+        return RunState{.document = own.at("document"),
                           .fingerprint = own.at("fingerprint"),
                           .output_bytes = own.at("output_bytes"),
                           .history_bytes = own.at("history_bytes"),
@@ -59,19 +59,19 @@ std::optional<Progressed> Checkpoint::read() {
 
 bool Checkpoint::due() const { return requested() && std::chrono::duration<double>(Clock::now() - last_).count() >= interval_; }
 
-void Checkpoint::write(sintering::Checkpoint checkpoint, const Progressed& progressed) {
+void Checkpoint::write(sintering::Checkpoint checkpoint, const RunState& run_state) {
     Json carried = io::carried_json(checkpoint.state.other, file_);
     io::check_finite(Json(checkpoint.numbers), file_);
     carried[numbers_key] = checkpoint.numbers;
-    carried[key] = {{"document", progressed.document},
-                        {"fingerprint", progressed.fingerprint},
+    carried[key] = {{"document", run_state.document},
+                        {"fingerprint", run_state.fingerprint},
                         {"arguments", arguments_},
-                        {"output_bytes", progressed.output_bytes},
-                        {"history_bytes", progressed.history_bytes},
-                        {"newton", progressed.newton},
-                        {"conjugate_gradients", progressed.conjugate_gradients},
-                        {"converged", progressed.converged},
-                        {"finished", progressed.finished}};
+                        {"output_bytes", run_state.output_bytes},
+                        {"history_bytes", run_state.history_bytes},
+                        {"newton", run_state.newton},
+                        {"conjugate_gradients", run_state.conjugate_gradients},
+                        {"converged", run_state.converged},
+                        {"finished", run_state.finished}};
     checkpoint.state.other = io::text_of(carried);
     io::Output output(file_, false, io::Resumption{.take_up = true});  // a checkpoint that kill -9 interrupted is written over
     output.write(std::move(checkpoint.state));

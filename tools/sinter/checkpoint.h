@@ -12,7 +12,7 @@
 namespace kiln::sinter {
 
 /// Where a run was when its checkpoint was written, besides the state itself.
-struct Progressed {
+struct RunState {
     std::size_t document = 0;          // of the input, from 0
     std::string fingerprint;           // of that document as it was read
     std::uint64_t output_bytes = 0, history_bytes = 0;
@@ -32,7 +32,7 @@ class Checkpoint {
     bool requested() const { return !file_.empty(); }
 
     /// What the file says, if --resume was given and the file is there. Throws Error where other options were given then.
-    std::optional<Progressed> read();
+    std::optional<RunState> read();
 
     /// Where to go on from, once read() has found one.
     const sintering::Checkpoint& found() const { return *checkpoint_; }
@@ -40,7 +40,7 @@ class Checkpoint {
     /// True when the next checkpoint is due by the wall clock.
     bool due() const;
 
-    void write(sintering::Checkpoint checkpoint, const Progressed& progressed);
+    void write(sintering::Checkpoint checkpoint, const RunState& run_state);
 
     /// Takes the file away at the end of the run.
     void remove() const;

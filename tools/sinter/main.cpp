@@ -24,17 +24,17 @@ int sinter_states(int argc, char** argv) {
 
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
     sinter::Checkpoint checkpoint(options, entry(Json::object())["arguments"]);
-    const std::optional<sinter::Progressed> earlier = checkpoint.read();
+    const std::optional<sinter::RunState> earlier = checkpoint.read();
     if (earlier && earlier->finished) return sinter::finish(common.output, options.history, *earlier, checkpoint);
 
     io::Input input(common.files);
-    const auto resumption = [&](std::uint64_t sinter::Progressed::*bytes) -> std::optional<io::Resumption> {
+    const auto resumption = [&](std::uint64_t sinter::RunState::*bytes) -> std::optional<io::Resumption> {
         if (!checkpoint.requested()) return std::nullopt;
         return io::Resumption{options.resume, earlier ? (*earlier).*bytes : 0};
     };
-    io::Output states(common.output, common.text, resumption(&sinter::Progressed::output_bytes));
+    io::Output states(common.output, common.text, resumption(&sinter::RunState::output_bytes));
     std::optional<io::Output> history;
-    if (!options.history.empty()) history.emplace(options.history, true, resumption(&sinter::Progressed::history_bytes));
+    if (!options.history.empty()) history.emplace(options.history, true, resumption(&sinter::RunState::history_bytes));
     cli::Progress progress("sinter", common);
     const auto warn = [&](const std::string& sentence) {
         progress.clear();

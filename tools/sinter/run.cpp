@@ -82,11 +82,11 @@ std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options
 /// One state on its way.
 class Sintered {
    public:
-    Sintered(State state, const std::string& place, const Options& options, const Sinks& sinks, Progressed progressed)
+    Sintered(State state, const std::string& place, const Options& options, const Sinks& sinks, RunState run_state)
         : place_(place),
           options_(options),
           sinks_(sinks),
-          progressed_(std::move(progressed)),
+          progressed_(std::move(run_state)),
           targets_(options, kiln::relative_density(state), state.time),
           method_(method_of(std::move(state), options)) {}
 
@@ -131,7 +131,7 @@ class Sintered {
         return true;
     }
 
-    const Progressed& progressed() const { return progressed_; }
+    const RunState& run_state() const { return progressed_; }
 
     void write_checkpoint(bool finished) {
         progressed_.finished = finished;
@@ -187,7 +187,7 @@ class Sintered {
     std::string place_;  // file and document, for warnings
     const Options& options_;
     const Sinks& sinks_;
-    Progressed progressed_;
+    RunState progressed_;
     Targets targets_;
     Json last_summary_ = Json::object();
     std::unique_ptr<sintering::SinteringMethod> method_;
@@ -195,7 +195,7 @@ class Sintered {
 
 }  // namespace
 
-int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<Progressed>& earlier) {
+int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<RunState>& earlier) {
     bool converged = !earlier || earlier->converged;
     std::size_t document = 0;
     std::unique_ptr<Sintered> last;
@@ -204,14 +204,14 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
         const std::size_t number = document++;
         if (earlier && number < earlier->document) return true;
         const bool taken_up = earlier && number == earlier->document;
-        Progressed progressed = taken_up ? *earlier : Progressed{.document = number, .fingerprint = "", .converged = converged};
-        if (sinks.checkpoint.requested()) progressed.fingerprint = fingerprint(state);
-        if (taken_up && progressed.fingerprint != earlier->fingerprint) throw Error("the checkpoint is of another input");
-        last = std::make_unique<Sintered>(std::move(state), place, options, sinks, progressed);
+        RunState run_state = taken_up ? *earlier : RunState{.document = number, .fingerprint = "", .converged = converged};
+        if (sinks.checkpoint.requested()) run_state.fingerprint = fingerprint(state);
+        if (taken_up && run_state.fingerprint != earlier->fingerprint) throw Error("the checkpoint is of another input");
+        last = std::make_unique<Sintered>(std::move(state), place, options, sinks, run_state);
         if (taken_up) last->take_up(sinks.checkpoint.found());
         last->warn_of_start();
         const bool whole = last->run();
-        converged = last->progressed().converged;
+        converged = last->run_state().converged;
         interrupted = !whole && sinks.checkpoint.requested();
         return whole && (sinks.checkpoint.requested() || !cli::stop_requested());
     });
@@ -228,11 +228,11 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
     return converged ? cli::done : cli::not_converged;
 }
 
-int finish(const std::string& output, const std::string& history, const Progressed& progressed, const Checkpoint& checkpoint) {
+int finish(const std::string& output, const std::string& history, const RunState& run_state, const Checkpoint& checkpoint) {
     if (!history.empty()) io::finish_partial(history);
     io::finish_partial(output);
     checkpoint.remove();
-    return progressed.converged ? cli::done : cli::not_converged;
+    return run_state.converged ? cli::done : cli::not_converged;
 }
 
 }  // namespace kiln::sinter

@@ -26,9 +26,9 @@ struct Sinks {
 /// order in which they are reached. Gives the exit status: 3 if a step did not converge or the schedule ended short of a required
 /// density. A requested stop ends the run after its step: with the last state written, or in a checkpoint if there is one.
 /// Throws Error for a required density or time that lies behind the state.
-int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<Progressed>& earlier);
+int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<RunState>& earlier);
 
 /// The end of a run whose checkpoint says that only the renaming of its outputs was left.
-int finish(const std::string& output, const std::string& history, const Progressed& progressed, const Checkpoint& checkpoint);
+int finish(const std::string& output, const std::string& history, const RunState& run_state, const Checkpoint& checkpoint);
 
 }  // namespace kiln::sinter
