@@ -180,7 +180,7 @@ class Failure {
         }
         std::vector<std::int32_t> order(body.network.nodes());
         std::iota(order.begin(), order.end(), 0);
-        const mechanics::Pieces pieces = mechanics::find_pieces(order, whole);
+        const mechanics::Components pieces = mechanics::find_components(order, whole);
         std::vector<std::int32_t> rows;
         for (const std::int32_t node : pieces.of(pieces.largest())) rows.push_back(body.particle[static_cast<std::size_t>(node)]);
         return reaches_supports(result_.specimen, result_.fixture, rows);

@@ -123,7 +123,7 @@ BondedPiece max_piece(const State& state) {
     std::vector<std::array<std::int32_t, 2>> pairs;
     pairs.reserve(carrying.size());
     for (const std::int32_t row : carrying) pairs.push_back(state.bonds->pair[at(row)]);
-    const Pieces pieces = find_pieces(along_x(state.particles), pairs);
+    const Components pieces = find_components(along_x(state.particles), pairs);
     const std::size_t largest = pieces.largest();
 
     BondedPiece body;

@@ -5,7 +5,7 @@
 
 namespace kiln::mechanics {
 
-std::size_t Pieces::largest() const {
+std::size_t Components::largest() const {
     std::size_t best = 0;
     for (std::size_t piece = 1; piece < size(); ++piece) {
         if (size(piece) > size(best)) best = piece;
@@ -23,9 +23,9 @@ Grouping<std::int32_t> find_incidence(std::size_t count, std::span<const std::ar
     });
 }
 
-Pieces find_pieces(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs) {
+Components find_components(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs) {
     const Grouping<std::int32_t> incidence = find_incidence(start_order.size(), pairs);
-    Pieces pieces;
+    Components pieces;
     pieces.start.push_back(0);
     pieces.particle.reserve(start_order.size());
     std::vector<bool> reached(start_order.size(), false);

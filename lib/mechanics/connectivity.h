@@ -12,7 +12,7 @@ namespace kiln::mechanics {
 
 /// Particles connected by bonds, piece by piece. Within a piece they stand breadth first from the piece's first particle in
 /// `start_order`, so that neighbours stand near each other.
-struct Pieces {
+struct Components {
     std::vector<std::int32_t> particle;  // every particle once
     std::vector<std::size_t> start;      // pieces + 1: where each piece begins in `particle`
 
@@ -24,7 +24,7 @@ struct Pieces {
 };
 
 /// start_order: all particles, in the order in which they may begin a piece.
-Pieces find_pieces(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs);
+Components find_components(std::span<const std::int32_t> start_order, std::span<const std::array<std::int32_t, 2>> pairs);
 
 /// For each of `count` particles the bonds at it, ascending. A bond of a particle with its own image stands once.
 Grouping<std::int32_t> find_incidence(std::size_t count, std::span<const std::array<std::int32_t, 2>> pairs);

@@ -89,7 +89,7 @@ TEST_CASE("connectivity: pieces stand breadth first from their first particle in
     // 0-1-2-3 with a branch 1-4; 5-6; 7 alone, with a bond to its own image.
     const std::vector<std::array<std::int32_t, 2>> bonds{{0, 1}, {1, 2}, {5, 6}, {2, 3}, {1, 4}, {7, 7}};
     const std::vector<std::int32_t> order{6, 3, 0, 1, 2, 4, 5, 7};
-    const mechanics::Pieces pieces = mechanics::find_pieces(order, bonds);
+    const mechanics::Components pieces = mechanics::find_components(order, bonds);
     CHECK(pieces.particle == std::vector<std::int32_t>{6, 5, 3, 2, 1, 0, 4, 7});
     CHECK(pieces.start == std::vector<std::size_t>{0, 2, 7, 8});
     CHECK(pieces.largest() == 1);
@@ -101,8 +101,8 @@ TEST_CASE("connectivity: pieces stand breadth first from their first particle in
 TEST_CASE("connectivity: of pieces of one size the first is the largest, and no particles are no pieces") {
     const std::vector<std::array<std::int32_t, 2>> bonds{{0, 2}, {1, 3}};
     const std::vector<std::int32_t> order{1, 0, 2, 3};
-    CHECK(mechanics::find_pieces(order, bonds).largest() == 0);
-    CHECK(mechanics::find_pieces({}, {}).size() == 0);
+    CHECK(mechanics::find_components(order, bonds).largest() == 0);
+    CHECK(mechanics::find_components({}, {}).size() == 0);
 }
 
 TEST_CASE("structure: a simple cubic lattice has six contacts a particle, no texture and one cluster") {
