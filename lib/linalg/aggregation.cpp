@@ -50,10 +50,10 @@ Aggregates find_aggregates(const BlockMatrix& matrix) {
     return aggregates;
 }
 
-Mat6 rigid_motion(const Vec3& lever) {
+Mat6 rigid_motion(const Vec3& arm) {
     Mat6 block = Mat6::Identity();
-    // Rotation q moves the point by q x lever.
-    block.topRightCorner<3, 3>() << 0.0, lever[2], -lever[1], -lever[2], 0.0, lever[0], lever[1], -lever[0], 0.0;
+    // Rotation q moves the point by q x arm.
+    block.topRightCorner<3, 3>() << 0.0, arm[2], -arm[1], -arm[2], 0.0, arm[0], arm[1], -arm[0], 0.0;
     return block;
 }
 

@@ -17,8 +17,8 @@ struct Aggregates {
 /// Groups of a node and its neighbours, in the order of the nodes.
 Aggregates find_aggregates(const BlockMatrix& matrix);
 
-/// Block of a rigid motion: displacement and rotation at `lever` from a point that moves and turns by the six values.
-Mat6 rigid_motion(const Vec3& lever);
+/// Block of a rigid motion: displacement and rotation at `arm` from a point that moves and turns by the six values.
+Mat6 rigid_motion(const Vec3& arm);
 
 /// Prolongation that moves every aggregate as a rigid body, about its root.
 BlockMatrix rigid_prolongation(const Aggregates& aggregates, const NodeGeometry& geometry);

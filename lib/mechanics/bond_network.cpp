@@ -271,12 +271,12 @@ Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loa
         for (const std::int32_t row : incidence.of(at(node))) {
             const auto bond = at(row);
             const BondLoad& load = loads[bond];
-            const Vec3 lever = 0.5 * network.vector[bond].cross(load.force);
+            const Vec3 moment = 0.5 * network.vector[bond].cross(load.force);
             for (const int end : {0, 1}) {
                 if (network.pair[bond][at(end)] != node) continue;
                 const double sign = end == 0 ? 1.0 : -1.0;
                 forces[at(node)].head<3>() += sign * load.force;
-                forces[at(node)].tail<3>() += (lever + sign * load.moment) / network.rotation_length;
+                forces[at(node)].tail<3>() += (moment + sign * load.moment) / network.rotation_length;
             }
         }
     }
