@@ -42,7 +42,8 @@ Level peak_level(Equilibria& levels, const Options& options, Result& result) {
         const double missing = required - level.point.deflection;
         if (exact && std::abs(missing) <= deflection_tolerance * required) return level;
         force = level.point.force + slope * missing;
-        if (!(force > 0.0)) throw Error("the bar does not bend downwards under the punch, so no force gives the required deflection");
+        if (!(force > 0.0))
+            throw Error("the bar does not bend downwards under the punch, so no force gives the required deflection");
         const Level before = level;
         const bool was_exact = std::exchange(exact, std::abs(missing) <= std::sqrt(deflection_tolerance) * required);
         level = loaded(levels, force, exact, options, result);

@@ -47,8 +47,8 @@ long double solid_volume(std::span<const double> radius, std::span<const double>
 }
 
 /// The bonds, thin ones included, with what there is to count about them.
-Bonds make_bonds(const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const ShrunkSpheres& shrunk, const Options& options,
-                 Summary& summary) {
+Bonds make_bonds(const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const ShrunkSpheres& shrunk,
+                 const Options& options, Summary& summary) {
     Bonds bonds;
     bonds.volume = shrunk.volume;
     for (std::size_t bond = 0; bond < overlaps.size(); ++bond) {

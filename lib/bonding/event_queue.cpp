@@ -147,7 +147,8 @@ class Shrinking {
 
 }  // namespace
 
-ShrunkSpheres shrink_exactly(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing, const Watch& watch) {
+ShrunkSpheres shrink_exactly(std::span<const double> radius, std::span<const Overlap> overlaps, Sharing sharing,
+                             const Watch& watch) {
     return Shrinking(radius, overlaps, sharing).run(watch);
 }
 

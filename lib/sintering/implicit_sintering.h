@@ -1,4 +1,5 @@
-// implicit_sintering.h: overdamped sintering in implicit steps, with step control and exact landing on required times and densities.
+// implicit_sintering.h: overdamped sintering in implicit steps, with step control and exact landing on required times and
+// densities.
 #pragma once
 
 #include <optional>

@@ -50,7 +50,8 @@ State make_packing(int side, unsigned seed) {
     return make_state(position, radius, side, true);
 }
 
-ShrunkSpheres shrink_line(const std::vector<double>& radius, const std::vector<Overlap>& overlaps, Sharing sharing = Sharing::pair) {
+ShrunkSpheres shrink_line(const std::vector<double>& radius, const std::vector<Overlap>& overlaps,
+                          Sharing sharing = Sharing::pair) {
     return shrink_exactly(radius, overlaps, sharing);
 }
 

@@ -22,10 +22,10 @@ struct Sinks {
     Checkpoint& checkpoint;
 };
 
-/// Sinters the states of the input, or what an earlier run left of them, and writes a state at each required density and time, in the
-/// order in which they are reached. Gives the exit status: 3 if a step did not converge or the schedule ended short of a required
-/// density. A requested stop ends the run after its step: with the last state written, or in a checkpoint if there is one.
-/// Throws Error for a required density or time that lies behind the state.
+/// Sinters the states of the input, or what an earlier run left of them, and writes a state at each required density and time, in
+/// the order in which they are reached. Gives the exit status: 3 if a step did not converge or the schedule ended short of a
+/// required density. A requested stop ends the run after its step: with the last state written, or in a checkpoint if there is
+/// one. Throws Error for a required density or time that lies behind the state.
 int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<RunState>& earlier);
 
 /// The end of a run whose checkpoint says that only the renaming of its outputs was left.
