@@ -13,7 +13,7 @@ using std::numbers::pi;
 
 constexpr double translation_power = 9.0 / 4.0;  // of 1 - x, on punches that shift
 constexpr double rotation_power = 5.0 / 4.0;     // on punches that turn
-constexpr double cylinder_part = 0.65;           // of the compliance of a neck's cylinder
+constexpr double cylinder_part = 0.7;           // of the compliance of a neck's cylinder
 constexpr double stretching_part = 0.6;          // of that of a sphere's sections, pulled at
 constexpr double turning_part = 0.6;             // of the same, turned
 constexpr double coverage_power = 0.35;

@@ -4,10 +4,10 @@
 // with the other necks. Of both sides i of a neck of radius a and length L, with x = a/R_i, s = sqrt(R_i^2 - a^2), and A, I,
 // J = 2 I of the neck's circle:
 //
-//   1/k_n       = 0.65 L/(E A) + sum [P_n (1 - x)^(9/4) + 0.6 W_i S_n]
-//   1/k_t       = 0.65 (L/(G A) + L^3/(12 E I)) + sum [P_t (1 - x)^(9/4) + W_i (2 (1 + nu) S_n + B)]
-//   1/k_torsion = 0.65 L/(G J) + sum [P_q (1 - x)^(5/4) + 0.6 W_i (1 + nu) S_b]
-//   1/k_bend    = 0.65 L/(E I) + sum [P_b (1 - x)^(5/4) + 0.6 W_i S_b]
+//   1/k_n       = 0.7 L/(E A) + sum [P_n (1 - x)^(9/4) + 0.6 W_i S_n]
+//   1/k_t       = 0.7 (L/(G A) + L^3/(12 E I)) + sum [P_t (1 - x)^(9/4) + W_i (2 (1 + nu) S_n + B)]
+//   1/k_torsion = 0.7 L/(G J) + sum [P_q (1 - x)^(5/4) + 0.6 W_i (1 + nu) S_b]
+//   1/k_bend    = 0.7 L/(E I) + sum [P_b (1 - x)^(5/4) + 0.6 W_i S_b]
 //
 // P are half-spaces under the rigid punch of radius a (Johnson, Contact Mechanics, 1985, ch. 3; Mindlin 1949; Reissner & Sagoci
 // 1944):
@@ -16,7 +16,7 @@
 // sphere_compliance() over E, the last from the neck's middle. W_i = max(1, O_i)^0.35 with the coverage O_i of the sphere.
 //
 // Where the numbers are from: 9/4 and 5/4 from finite elements of one neck (axisymmetric, all four modes, within 6 % for x from 0.2
-// to 0.95); 0.65 (other necks run into a neck's cylinder), 0.6 and 0.35 from voxel solutions of packings.
+// to 0.95); 0.7 (other necks run into a neck's cylinder), 0.6 and 0.35 from voxel solutions of packings.
 // docs/mechanics.md has the errors. Springs between pairs exaggerate anisotropy: moduli of lattices along their axes may be off by
 // half, or twice what they are.
 #pragma once

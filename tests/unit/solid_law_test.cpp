@@ -35,21 +35,21 @@ TEST_CASE("solid: early necks are two rigid punches on half-spaces, in all four 
     CHECK(k.bending == relative(2.0 * E * a * a * a / (3.0 * (1.0 - nu * nu)), 2e-3));
 }
 
-TEST_CASE("solid: a neck as wide as its spheres is 0.65 of a cylinder, and a wider one counts as that") {
+TEST_CASE("solid: a neck as wide as its spheres is 0.7 of a cylinder, and a wider one counts as that") {
     const double L = 0.4 * R, A = pi * R * R, I = A * R * R / 4.0;
     for (const double radius : {R, 1.3 * R}) {
         const BondStiffness k = solid_stiffness(E, G, {R, R, L, radius, L, 1.0, 1.0});
-        CHECK(k.normal == relative(E * A / (0.65 * L), 1e-12));
-        CHECK(k.shear == relative(1.0 / (0.65 * (L / (G * A) + L * L * L / (12.0 * E * I))), 1e-12));
-        CHECK(k.torsion == relative(2.0 * G * I / (0.65 * L), 1e-12));
-        CHECK(k.bending == relative(E * I / (0.65 * L), 1e-12));
+        CHECK(k.normal == relative(E * A / (0.7 * L), 1e-12));
+        CHECK(k.shear == relative(1.0 / (0.7 * (L / (G * A) + L * L * L / (12.0 * E * I))), 1e-12));
+        CHECK(k.torsion == relative(2.0 * G * I / (0.7 * L), 1e-12));
+        CHECK(k.bending == relative(E * I / (0.7 * L), 1e-12));
     }
 }
 
 TEST_CASE("solid: half-way it is the sum of its parts, with sections integrated one by one") {
     const double R1 = 50e-9, R2 = 80e-9, a = 30e-9, L = 7e-9, A = pi * a * a, I = A * a * a / 4.0, O1 = 0.7, O2 = 5.0;
-    double normal = 0.65 * L / (E * A), shear = 0.65 * (L / (G * A) + L * L * L / (12.0 * E * I));
-    double torsion = 0.65 * L / (2.0 * G * I), bending = 0.65 * L / (E * I);
+    double normal = 0.7 * L / (E * A), shear = 0.7 * (L / (G * A) + L * L * L / (12.0 * E * I));
+    double torsion = 0.7 * L / (2.0 * G * I), bending = 0.7 * L / (E * I);
     for (const auto& [R_i, W] : {std::pair{R1, 1.0}, std::pair{R2, std::pow(O2, 0.35)}}) {
         const double s = std::sqrt(R_i * R_i - a * a), open = 1.0 - a / R_i;
         const int steps = 200000;
