@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "checkpoint.h"
+#include "io/checkpoint.h"
 #include "tools/common/tool.h"
 #include "green.h"
 #include "run.h"
@@ -23,18 +23,19 @@ int sinter_states(int argc, char** argv) {
     cli::check_outputs({common.output, options.history, options.checkpoint});
 
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
-    sinter::Checkpoint checkpoint(options, entry(Json::object())["arguments"]);
-    const std::optional<sinter::RunState> earlier = checkpoint.read();
-    if (earlier && earlier->finished) return sinter::finish(common.output, options.history, *earlier, checkpoint);
+    io::CheckpointFile checkpoint(options.checkpoint, options.resume, options.checkpoint_every,
+                                  entry(Json::object())["arguments"]);
+    const std::optional<io::Checkpoint> earlier = checkpoint.read();
+    if (earlier && earlier->run.finished) return sinter::finish(common.output, options.history, earlier->run, checkpoint);
 
     io::Input input(common.files);
-    const auto resumption = [&](std::uint64_t sinter::RunState::*bytes) -> std::optional<io::Resumption> {
+    const auto resumption = [&](std::uint64_t io::RunState::*bytes) -> std::optional<io::Resumption> {
         if (!checkpoint.requested()) return std::nullopt;
-        return io::Resumption{options.resume, earlier ? (*earlier).*bytes : 0};
+        return io::Resumption{options.resume, earlier ? earlier->run.*bytes : 0};
     };
-    io::Output states(common.output, common.text, resumption(&sinter::RunState::output_bytes));
+    io::Output states(common.output, common.text, resumption(&io::RunState::output_bytes));
     std::optional<io::Output> history;
-    if (!options.history.empty()) history.emplace(options.history, true, resumption(&sinter::RunState::history_bytes));
+    if (!options.history.empty()) history.emplace(options.history, true, resumption(&io::RunState::history_bytes));
     cli::Progress progress("sinter", common);
     const auto warn = [&](const std::string& sentence) {
         progress.clear();

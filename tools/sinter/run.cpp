@@ -82,7 +82,7 @@ std::unique_ptr<sintering::SinteringMethod> method_of(State state, const Options
 /// One state on its way.
 class Sintered {
    public:
-    Sintered(State state, const std::string& place, const Options& options, const Sinks& sinks, RunState run_state)
+    Sintered(State state, const std::string& place, const Options& options, const Sinks& sinks, io::RunState run_state)
         : place_(place),
           options_(options),
           sinks_(sinks),
@@ -90,8 +90,8 @@ class Sintered {
           targets_(options, kiln::relative_density(state), state.time),
           method_(method_of(std::move(state), options)) {}
 
-    void take_up(const sintering::Checkpoint& checkpoint) {
-        method_->restore(checkpoint);
+    void take_up(const io::Checkpoint& checkpoint) {
+        method_->restore({checkpoint.state, checkpoint.numbers});
         targets_.reached(method_->relative_density(), method_->time(), HUGE_VAL);
     }
 
@@ -131,13 +131,14 @@ class Sintered {
         return true;
     }
 
-    const RunState& run_state() const { return progressed_; }
+    const io::RunState& run_state() const { return progressed_; }
 
     void write_checkpoint(bool finished) {
         progressed_.finished = finished;
         progressed_.output_bytes = sinks_.states.flushed_bytes();
         if (sinks_.history) progressed_.history_bytes = sinks_.history->flushed_bytes();
-        sinks_.checkpoint.write(method_->checkpoint(), progressed_);
+        sintering::Checkpoint reached = method_->checkpoint();
+        sinks_.checkpoint.write({std::move(reached.state), std::move(reached.numbers), progressed_});
     }
 
    private:
@@ -187,7 +188,7 @@ class Sintered {
     std::string place_;  // file and document, for warnings
     const Options& options_;
     const Sinks& sinks_;
-    RunState progressed_;
+    io::RunState progressed_;
     Targets targets_;
     Json last_summary_ = Json::object();
     std::unique_ptr<sintering::SinteringMethod> method_;
@@ -195,20 +196,21 @@ class Sintered {
 
 }  // namespace
 
-int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<RunState>& earlier) {
-    bool converged = !earlier || earlier->converged;
+int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<io::Checkpoint>& earlier) {
+    bool converged = !earlier || earlier->run.converged;
     std::size_t document = 0;
     std::unique_ptr<Sintered> last;
     bool interrupted = false;
     cli::for_each_state(input, [&](State state, const std::string& place) {
         const std::size_t number = document++;
-        if (earlier && number < earlier->document) return true;
-        const bool taken_up = earlier && number == earlier->document;
-        RunState run_state = taken_up ? *earlier : RunState{.document = number, .fingerprint = "", .converged = converged};
-        if (sinks.checkpoint.requested()) run_state.fingerprint = fingerprint(state);
-        if (taken_up && run_state.fingerprint != earlier->fingerprint) throw Error("the checkpoint is of another input");
+        if (earlier && number < earlier->run.document) return true;
+        const bool taken_up = earlier && number == earlier->run.document;
+        io::RunState run_state =
+            taken_up ? earlier->run : io::RunState{.document = number, .fingerprint = "", .converged = converged};
+        if (sinks.checkpoint.requested()) run_state.fingerprint = io::fingerprint(state);
+        if (taken_up) earlier->require_input(run_state.fingerprint);
         last = std::make_unique<Sintered>(std::move(state), place, options, sinks, run_state);
-        if (taken_up) last->take_up(sinks.checkpoint.found());
+        if (taken_up) last->take_up(*earlier);
         last->warn_of_start();
         const bool whole = last->run();
         converged = last->run_state().converged;
@@ -228,7 +230,8 @@ int run(io::Input& input, const Options& options, const Sinks& sinks, const std:
     return converged ? cli::done : cli::not_converged;
 }
 
-int finish(const std::string& output, const std::string& history, const RunState& run_state, const Checkpoint& checkpoint) {
+int finish(const std::string& output, const std::string& history, const io::RunState& run_state,
+           const io::CheckpointFile& checkpoint) {
     if (!history.empty()) io::finish_partial(history);
     io::finish_partial(output);
     checkpoint.remove();

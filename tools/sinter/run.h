@@ -6,9 +6,9 @@
 #include <string>
 
 #include "tools/common/progress.h"
+#include "io/checkpoint.h"
 #include "io/files.h"
 #include "options.h"
-#include "tools/sinter/checkpoint.h"
 
 namespace kiln::sinter {
 
@@ -19,16 +19,17 @@ struct Sinks {
     cli::Progress& progress;
     std::function<Json(const Json& summary)> entry;       // history entry of a state from its summary
     std::function<void(const std::string& sentence)> warn;
-    Checkpoint& checkpoint;
+    io::CheckpointFile& checkpoint;
 };
 
 /// Sinters the states of the input, or what an earlier run left of them, and writes a state at each required density and time, in
 /// the order in which they are reached. Gives the exit status: 3 if a step did not converge or the schedule ended short of a
 /// required density. A requested stop ends the run after its step: with the last state written, or in a checkpoint if there is
 /// one. Throws Error for a required density or time that lies behind the state.
-int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<RunState>& earlier);
+int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<io::Checkpoint>& earlier);
 
 /// The end of a run whose checkpoint says that only the renaming of its outputs was left.
-int finish(const std::string& output, const std::string& history, const RunState& run_state, const Checkpoint& checkpoint);
+int finish(const std::string& output, const std::string& history, const io::RunState& run_state,
+           const io::CheckpointFile& checkpoint);
 
 }  // namespace kiln::sinter

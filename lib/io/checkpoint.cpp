@@ -1,12 +1,14 @@
 // checkpoint.cpp: a checkpoint is a dem-state document of its own, with what the run needs under "checkpoint".
-#include "tools/sinter/checkpoint.h"
+#include "io/checkpoint.h"
 
-#include <cstring>
+#include <cstdio>
 #include <filesystem>
+#include <utility>
 
+#include "io/files.h"
 #include "io/json_values.h"
 
-namespace kiln::sinter {
+namespace kiln::io {
 
 namespace {
 
@@ -30,21 +32,25 @@ std::string fingerprint(const State& state) {
     return text;
 }
 
-Checkpoint::Checkpoint(const Options& options, Json arguments)
-    : file_(options.checkpoint), resume_(options.resume), interval_(options.checkpoint_every), arguments_(std::move(arguments)) {}
+void Checkpoint::require_input(const std::string& fingerprint) const {
+    if (fingerprint != run.fingerprint) throw Error("the checkpoint is of another input");
+}
 
-std::optional<RunState> Checkpoint::read() {
+CheckpointFile::CheckpointFile(std::string file, bool resume, double interval, Json arguments)
+    : file_(std::move(file)), resume_(resume), interval_(interval), arguments_(std::move(arguments)) {}
+
+std::optional<Checkpoint> CheckpointFile::read() const {
     if (!requested() || !resume_ || !std::filesystem::exists(file_)) return std::nullopt;
-    io::Input input({file_});
-    checkpoint_ = {.state = std::move(*input.next_state()), .numbers = {}};
-    const Json carried = io::carried_json(checkpoint_->state.other, file_);
+    Input input({file_});
+    Checkpoint checkpoint{.state = std::move(*input.next_state()), .numbers = {}, .run = {}};
+    const Json carried = carried_json(checkpoint.state.other, file_);
     if (!carried.contains(key) || !carried.contains(numbers_key)) throw Error(file_ + ": is no checkpoint of sinter");
     const Json& own = carried[key];
     try {
-        checkpoint_->numbers = carried[numbers_key].get<sintering::Numbers>();
+        checkpoint.numbers = carried[numbers_key].get<decltype(checkpoint.numbers)>();
         if (own.at("arguments") != arguments_)
             throw Error(file_ + ": is of a run with other options, " + own.at("arguments").dump() + "; delete it to begin anew");
-        return RunState{.document = own.at("document"),
+        checkpoint.run = {.document = own.at("document"),
                           .fingerprint = own.at("fingerprint"),
                           .output_bytes = own.at("output_bytes"),
                           .history_bytes = own.at("history_bytes"),
@@ -55,32 +61,36 @@ std::optional<RunState> Checkpoint::read() {
     } catch (const Json::exception& error) {
         throw Error(file_ + ": is no checkpoint of sinter: " + error.what());
     }
+    return checkpoint;
 }
 
-bool Checkpoint::due() const { return requested() && std::chrono::duration<double>(Clock::now() - last_).count() >= interval_; }
+bool CheckpointFile::due(Clock::time_point now) const {
+    return requested() && std::chrono::duration<double>(now - last_).count() >= interval_;
+}
 
-void Checkpoint::write(sintering::Checkpoint checkpoint, const RunState& run_state) {
-    Json carried = io::carried_json(checkpoint.state.other, file_);
-    io::check_finite(Json(checkpoint.numbers), file_);
+void CheckpointFile::write(Checkpoint checkpoint) {
+    const RunState& run = checkpoint.run;
+    Json carried = carried_json(checkpoint.state.other, file_);
+    check_finite(Json(checkpoint.numbers), file_);
     carried[numbers_key] = checkpoint.numbers;
-    carried[key] = {{"document", run_state.document},
-                        {"fingerprint", run_state.fingerprint},
-                        {"arguments", arguments_},
-                        {"output_bytes", run_state.output_bytes},
-                        {"history_bytes", run_state.history_bytes},
-                        {"newton", run_state.newton},
-                        {"conjugate_gradients", run_state.conjugate_gradients},
-                        {"converged", run_state.converged},
-                        {"finished", run_state.finished}};
-    checkpoint.state.other = io::text_of(carried);
-    io::Output output(file_, false, io::Resumption{.take_up = true});  // a checkpoint that kill -9 interrupted is written over
+    carried[key] = {{"document", run.document},
+                    {"fingerprint", run.fingerprint},
+                    {"arguments", arguments_},
+                    {"output_bytes", run.output_bytes},
+                    {"history_bytes", run.history_bytes},
+                    {"newton", run.newton},
+                    {"conjugate_gradients", run.conjugate_gradients},
+                    {"converged", run.converged},
+                    {"finished", run.finished}};
+    checkpoint.state.other = text_of(carried);
+    Output output(file_, false, Resumption{.take_up = true});  // a checkpoint that kill -9 interrupted is written over
     output.write(std::move(checkpoint.state));
     output.commit();
     last_ = Clock::now();
 }
 
-void Checkpoint::remove() const {
+void CheckpointFile::remove() const {
     if (requested()) std::filesystem::remove(file_);
 }
 
-}  // namespace kiln::sinter
+}  // namespace kiln::io
