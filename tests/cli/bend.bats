@@ -183,6 +183,10 @@ PROGRAM
     run -2 "$BEND" --max-force 1uN --max-deflection 1nm "$BAR"
     run -2 "$BEND" --bond-law glue "$BAR"
     run -2 "$BEND" --cycles 0 "$BAR"
+    run -2 --separate-stderr "$BEND" --text "$BAR"
+    assert_equal "$stderr" "bend: --text: needs --states; what is written without it is text always; see bend --help"
+    run -2 --separate-stderr "$BEND" --method dynamic --tolerance 1e-7 "$BAR"
+    assert_equal "$stderr" "bend: --tolerance: has no meaning with --method dynamic; see bend --help"
     run -0 "$BEND" --help
     assert_output --partial "analyze modulus"
 }

@@ -70,7 +70,11 @@ last() { "$ANALYZE" info "$1" | tail -1 | jq ".last_step.summary$2"; }
 --temperature 1200C --to-density 0.6 --pressure 10|has no unit
 --temperature 1200C --to-density 0.6 --boundary free --fix x|--boundary free
 --temperature 1200C --to-density 0.6 --checkpoint c.kiln|-o FILE
---temperature 1200C --to-density 0.6 --resume -o o.kiln|--checkpoint FILE
+--temperature 1200C --to-density 0.6 --resume -o o.kiln|--resume requires --checkpoint FILE
+--temperature 1200C --to-density 0.6 --checkpoint-every 5s -o o.kiln|--checkpoint-every requires --checkpoint FILE
+--temperature 1200C --to-density 0.6 --mass-scaling 1e19|--mass-scaling: needs --method explicit
+--temperature 1200C --to-density 0.6 --method explicit --tolerance 1e-3|--tolerance: has no meaning with --method explicit
+--temperature 1200C --to-density 0.6 --method explicit --order 1|--order: has no meaning with --method explicit
 END
 }
 

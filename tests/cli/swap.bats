@@ -46,7 +46,7 @@ END
 
 @test "text between all stages gives the numbers that binary gives" {
     "$ANALYZE" select --index 1,2,3 "$SINTERED" | "$BONDIFY" -q | "$BEND" -q | "$ANALYZE" modulus >binary.json
-    "$ANALYZE" select --index 1,2,3 --text "$SINTERED" | "$BONDIFY" -q --text | "$BEND" -q --text | "$ANALYZE" modulus >text.json
+    "$ANALYZE" select --index 1,2,3 --text "$SINTERED" | "$BONDIFY" -q --text | "$BEND" -q | "$ANALYZE" modulus >text.json
     cmp binary.json text.json
 }
 

@@ -228,7 +228,7 @@ def sinter_explicit(trial):
     """The explicit method, its mass scaled by k^5 for lengths k times as large as relaxation times ask, obeys the same scaling;
     turned axes turn the result. Sums alone differ, over a thousand steps: 1e-8."""
     state, firing, time = drawn_firing(trial, tolerance=1e-4, gain=(0.0005, 0.001), most=60, mixed=0.0)
-    explicit = [*firing.options, "--method=explicit"]
+    explicit = [option for option in firing.options if not option.startswith("--tolerance")] + ["--method=explicit"]
     firing.options = [*explicit, "--mass-scaling=1e24"]
     steps = summary(held(trial, firing, state, time))["steps"]
     mass = 1e24 * (steps / 1000) ** 2  # for about a thousand steps, whose length goes with the root of the mass

@@ -29,6 +29,8 @@ int run(int argc, char** argv) {
     options.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
+    if (common.text && options.states.empty())
+        throw CLI::ValidationError("--text", "needs --states; what is written without it is text always");
     cli::check_outputs({common.output, options.states});
 
     io::Input input(common.files, cli::stop_requested);

@@ -55,7 +55,7 @@ void Options::add_to(CLI::App& app) {
                     "where the tangential force reaches this fraction of the normal one; 0: rollers");
     cli::add_bond_model(app, model);
     cli::add_number(app, "--tolerance", tolerance, {1e-14, 1e-2},
-                    "Unbalanced force over contact force at which an equilibrium is reached");
+                    "Unbalanced force over contact force at which an equilibrium is reached; static");
     app.add_option("--states", states, "Also write the bar bent by the maximum force, with the forces in its bonds, to this file")
         ->type_name("FILE");
     add_dynamic(app);
@@ -75,6 +75,9 @@ void Options::check(const CLI::App& app) const {
     }
     for (const char* name : {"--punch-velocity", "--damping", "--mass-scaling"}) {
         if (app.count(name) > 0 && method != Method::motion) throw CLI::ValidationError(name, "needs --method dynamic");
+    }
+    if (app.count("--tolerance") > 0 && method == Method::motion) {
+        throw CLI::ValidationError("--tolerance", "has no meaning with --method dynamic");
     }
     if (app.count("--until") > 0 && !to_failure()) {
         throw CLI::ValidationError("--until", "needs --tensile-strength or --shear-strength");

@@ -19,7 +19,7 @@ int sinter_states(int argc, char** argv) {
     options.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
-    options.check(common.output);
+    options.check(app, common.output);
     cli::check_outputs({common.output, options.history, options.checkpoint});
 
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };

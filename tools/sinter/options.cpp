@@ -87,7 +87,7 @@ void Options::add_method(CLI::App& app) {
     add_choice(app, "--method", method, {{"implicit", SinterMethod::implicit}, {"explicit", SinterMethod::explicit_steps}},
                "implicit: without inertia, second order in time; explicit: with inertia, scaled, as in the paper");
     add_number(app, "--mass-scaling", mass_scaling, {cli::above_zero}, "Mass over the true one; explicit");
-    add_number(app, "--tolerance", tolerance, {}, "Relative error of the density over the run to aim at");
+    add_number(app, "--tolerance", tolerance, {}, "Relative error of the density over the run to aim at; implicit");
     add_number(app, "--order", order, {1, 2}, "Order in time of the implicit step; 1 is for comparison");
     add_number(app, "--alpha", constants.alpha, {0.0}, "Constant of the sintering force (alpha/beta) pi 2 R* gamma of a contact");
     add_number(app, "--beta", constants.beta, {cli::above_zero},
@@ -96,7 +96,7 @@ void Options::add_method(CLI::App& app) {
                "Constant of the tangential viscosity eta pi a^2 (2 R*)^2/(2 beta Delta); a^2 = 4 R* h");
 }
 
-void Options::check(const std::string& output) const {
+void Options::check(const CLI::App& app, const std::string& output) const {
     if (schedule.empty() && temperature == 0.0) throw CLI::ValidationError("one of --temperature and --schedule is required");
     if (densities.empty() && times.empty() && schedule.empty())
         throw CLI::ValidationError("one of --to-density, --at-time and --schedule is required");
@@ -114,7 +114,18 @@ void Options::check(const std::string& output) const {
             "--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
     if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint requires an output file: -o FILE");
     if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume requires --checkpoint FILE");
+    refuse_unused(app);
     if (!schedule.empty()) cli::parsed("--schedule", [this] { return io::parse_schedule(schedule); });
+}
+
+void Options::refuse_unused(const CLI::App& app) const {
+    if (checkpoint.empty() && app.count("--checkpoint-every") > 0)
+        throw CLI::ValidationError("--checkpoint-every requires --checkpoint FILE");
+    const bool with_inertia = method == SinterMethod::explicit_steps;
+    if (!with_inertia && app.count("--mass-scaling") > 0)
+        throw CLI::ValidationError("--mass-scaling", "needs --method explicit");
+    for (const char* name : {"--tolerance", "--order"})
+        if (with_inertia && app.count(name) > 0) throw CLI::ValidationError(name, "has no meaning with --method explicit");
 }
 
 sintering::SinteringSettings Options::settings(double start) const {

@@ -38,8 +38,8 @@ struct Options {
 
     void add_to(CLI::App& app);
 
-    /// Checks options against each other; throws CLI::ValidationError.
-    void check(const std::string& output) const;
+    /// Checks options against each other, once they are parsed; throws CLI::ValidationError.
+    void check(const CLI::App& app, const std::string& output) const;
 
     /// Settings of the method for a state at the time `start` (s), where the schedule begins; --at-time is on its own clock.
     sintering::SinteringSettings settings(double start) const;
@@ -51,6 +51,7 @@ struct Options {
     void add_programme(CLI::App& app);
     void add_boundaries(CLI::App& app);
     void add_method(CLI::App& app);
+    void refuse_unused(const CLI::App& app) const;
 };
 
 }  // namespace kiln::sinter
