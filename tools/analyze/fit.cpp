@@ -147,7 +147,8 @@ Json fit_json(const physics::PorosityLaw& law, const analysis::Fit& fit, const P
 
 std::string error_key(const physics::Parameter& parameter) { return parameter.name + " error"; }
 
-std::vector<Column> columns_of(const std::vector<const physics::PorosityLaw*>& wanted) {
+/// with_data: measurements lie beside the fit.
+std::vector<Column> columns_of(const std::vector<const physics::PorosityLaw*>& wanted, bool with_data) {
     std::vector<Column> columns{{"law", "law", ""}, {"formula", "formula", ""}};
     for (const physics::PorosityLaw* law : wanted)
         for (const physics::Parameter& parameter : law->parameters) {
@@ -157,6 +158,7 @@ std::vector<Column> columns_of(const std::vector<const physics::PorosityLaw*>& w
         }
     columns.insert(columns.end(),
                    {{"count", "points", ""}, {"weighting", "weighting", ""}, {"r_squared", "R2", ""}, {"aicc", "AICc", ""}});
+    if (with_data) columns.push_back({"rms_deviation", "rms deviation of data", ""});
     return columns;
 }
 
@@ -165,6 +167,7 @@ Json table_row(const physics::PorosityLaw& law, Json result) {
     for (const physics::Parameter& parameter : law.parameters)
         result[error_key(parameter)] = result["standard_errors"][parameter.name];
     result["count"] = result["points"].size();
+    if (result.contains("data")) result["rms_deviation"] = result["data"]["rms_deviation"];
     return result;
 }
 
@@ -260,7 +263,7 @@ int fit(int argc, char** argv) {
     cli::parse(app, argc, argv, common);
 
     const Points points = read_points(common.files);
-    Report report(common, options.table, columns_of(options.wanted));
+    Report report(common, options.table, columns_of(options.wanted, !options.data.empty()));
     for (auto& [law, result] : results_of(options, points, common.quiet))
         report.add(options.table ? table_row(*law, std::move(result)) : std::move(result));
     report.finish();
