@@ -125,6 +125,8 @@ modulus_line() {
     run -1 "$ANALYZE" modulus --window 0.6:0.55 "$DATA/bending_test.jsonl"
     assert_output --partial "document 1: the last unloading has 0 points"
     run -2 "$ANALYZE" modulus --window 1/3:5/6 "$DATA/bending_test.jsonl"
+    run -2 --separate-stderr "$ANALYZE" modulus --shear none --poisson-ratio 0.2 "$DATA/bending_test.jsonl"
+    assert_equal "$stderr" "analyze modulus: --poisson-ratio: has no meaning with --shear none; see analyze modulus --help"
     jq -c '.curve |= map_values(.[:4])' "$DATA/bending_test.jsonl" >loading.jsonl
     run -1 "$ANALYZE" modulus loading.jsonl
     assert_output --partial "document 1: the curve has no unloading"

@@ -19,7 +19,7 @@ unloading() { # force in N against deflection in mm, loaded to 60 N and back
     near "$(value .slope)" 1e6 1e-9
     near "$(value .young_modulus)" 6.4375e10 1e-9
     assert_equal "$(value '[.points, .relative_density, .method, .source] | tostring')" '[31,0.79,"experiment","bar.csv"]'
-    run -0 "$ANALYZE" modulus --shear none "${SIZE[@]}" bar.csv
+    run -0 "$ANALYZE" modulus --shear none "${SIZE[@]::6}" bar.csv
     near "$(value .young_modulus)" 6.25e10 1e-9
     assert_equal "$(value '[.shear_correction, .relative_density] | tostring')" "[1,null]"
 }
@@ -103,6 +103,10 @@ measured() { # moduli of Knudsen's law, with errors of 1 %
     assert_equal "$(jq -sc 'map(.aicc) | . == sort' <<<"$output")" true
     assert_equal "${#lines[@]}" 6
     jq -e '.data.rms_deviation < 1e-6' <<<"${lines[0]}"
+    deviation=$(jq .data.rms_deviation <<<"${lines[5]}")
+    run -0 "$ANALYZE" fit --law all --data measured.csv --table measured.csv
+    assert_line --index 0 --regexp "rms deviation of data$"
+    near "$(awk '{ print $NF }' <<<"${lines[6]}")" "$deviation" 0.01
     run -0 "$ANALYZE" fit --law power,pabst --table measured.csv
     assert_line --index 0 --partial "Pc"
     run -2 "$ANALYZE" fit --law knutsen measured.csv

@@ -36,6 +36,17 @@ setup() { cd "$BATS_TEST_TMPDIR"; }
     run -2 "$ANALYZE" density --measure envelope --probe-radius 0nm "$DATA/two_spheres.jsonl"
 }
 
+@test "analyze density, bonds: what a measure or a table does not use is refused" {
+    refuse() { run -2 --separate-stderr "$ANALYZE" "${@:2}" "$DATA/two_spheres.jsonl"; assert_equal "$stderr" "analyze $2: $1; see analyze $2 --help"; }
+    for measure in auto box inner; do
+        refuse "--probe-radius: needs --measure envelope" density --measure $measure --probe-radius 1m
+    done
+    refuse "--bins: has no meaning with --table, which does not show it" density --bins 5 --table
+    refuse "--correlation: has no meaning with --table, which does not show it" density --correlation --table
+    refuse "--bins: has no meaning with --table, which does not show it" bonds --table --bins 5
+    run -0 "$ANALYZE" density --bins 5 --table=false "$DATA/two_spheres.jsonl"
+}
+
 @test "analyze density: g(r) of a cubic lattice stands at its distances, periodic and free, and is 1 where centres lie at random" {
     run -0 "$ANALYZE" density --correlation --range 150nm --shells 15 "$DATA/cubic_series.jsonl"
     # 6 neighbours at 100 nm, 12 at 141 nm, in shells of 10 nm and cells of 1e-21 m3.

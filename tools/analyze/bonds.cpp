@@ -97,6 +97,7 @@ int bonds(int argc, char** argv) {
                  "analyze bonds"};
     app.footer(bonds_footer);
     cli::add_number(app, "--bins", bins, {1, 1000000}, "Number of bins of the histogram");
+    app.callback([&app] { refuse_with_table(app, {"--bins"}); });
     return report_each(app, argc, argv, bonds_columns, [&bins](io::Document document) {
         return bonds_of(io::state_from(std::move(document)), bins);
     });

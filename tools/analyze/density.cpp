@@ -81,6 +81,9 @@ struct DensityOptions {
             for (const char* name : {"--probe-radius", "--range"})
                 if (app.count(name) > 0 && !((name[2] == 'p' ? probe : range) > 0.0))
                     throw CLI::ValidationError(name, "must be greater than zero");
+            if (app.count("--probe-radius") > 0 && measure != analysis::Measure::envelope)
+                throw CLI::ValidationError("--probe-radius", "needs --measure envelope");
+            refuse_with_table(app, {"--bins", "--correlation"});
         });
     }
 };

@@ -85,6 +85,10 @@ void ModulusOptions::add_to(CLI::App& app) {
                       "Deflection of machine and fixture per force, taken off the measured deflection", "0");
     cli::add_choice(app, "--shear", shear, {{"timoshenko", true}, {"none", false}},
                     "timoshenko: with the bracket; none: without it, as for a slender bar");
+    app.callback([this, &app] {
+        if (!shear && app.count("--poisson-ratio") > 0)
+            throw CLI::ValidationError("--poisson-ratio", "has no meaning with --shear none");
+    });
 }
 
 /// The CSV of an experiment as the document that bend would have written.

@@ -58,6 +58,12 @@ void add_table(CLI::App& app, bool& table) {
     app.add_flag("--table", table, "A table for people, with units, instead of JSON");
 }
 
+void refuse_with_table(const CLI::App& app, std::initializer_list<const char*> names) {
+    if (!app.get_option("--table")->as<bool>()) return;
+    for (const char* name : names)
+        if (app.count(name) > 0) throw CLI::ValidationError(name, "has no meaning with --table, which does not show it");
+}
+
 Report::Report(const cli::Common& common, bool table, std::vector<Column> columns)
     : output_(common.output, true), table_(table), columns_(std::move(columns)) {}
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct Column {
 
 /// Adds --table to the app.
 void add_table(CLI::App& app, bool& table);
+
+/// To be called once options are parsed: throws CLI::ValidationError for one of `names`, of which a table shows nothing, beside
+/// --table.
+void refuse_with_table(const CLI::App& app, std::initializer_list<const char*> names);
 
 class Report {
    public:
