@@ -244,6 +244,19 @@ END
     assert_output --partial "dem-convert: cut.kiln"
     run -2 "$CONVERT" --radius 50 second.kiln out.csv
     assert_output --partial "'50' is not a number with a unit"
+    while IFS='|' read -r option wanted; do
+        run -2 "$CONVERT" $option second.kiln out.csv
+        assert_line --partial "error: ${option% *} has an effect only $wanted, and this is from dem to csv"
+    done <<'END'
+--text|to dem
+--bonds cut|to vtu
+--units micro|from data or dump or to data or dump
+--atom-style sphere|from data
+--boundary ppp|from data or dump
+--radius 50nm|from dump or xyz or csv
+--bond-radius 28nm|from data
+--time-step 10ns|from dump
+END
     run -0 ls
     refute_line --regexp "^out|partial"
 }

@@ -83,6 +83,17 @@ WRITERS = {
     "xyz": convert_text.write_xyz,
     "csv": convert_text.write_csv
 }
+# The formats that an option has an effect on, as what is read and as what is written.
+USED_BY = {
+    "text": ((), ("dem", )),
+    "bonds": ((), ("vtu", )),
+    "units": (("data", "dump"), ("data", "dump")),
+    "atom_style": (("data", ), ()),
+    "boundary": (("data", "dump"), ()),
+    "radius": (("dump", "xyz", "csv"), ()),
+    "bond_radius": (("data", ), ()),
+    "time_step": (("dump", ), ())
+}
 ENDINGS = {
     ".kiln": "dem",
     ".dem": "dem",
@@ -110,6 +121,15 @@ def format_of(path, told, known, option):
     return name
 
 
+def refuse_unused(parse, given, source, target):
+    """Ends the program where an option was given that neither of the two formats uses."""
+    for name, (reading, writing) in USED_BY.items():
+        if getattr(given, name) in (None, False) or source in reading or target in writing:
+            continue
+        sides = [f"{side} {' or '.join(formats)}" for side, formats in (("from", reading), ("to", writing)) if formats]
+        parse.error(f"--{name.replace('_', '-')} has an effect only {' or '.join(sides)}, and this is from {source} to {target}")
+
+
 def with_the_rest(documents, given):
     """The states with a line in their history, and what --like has and they do not: materials, contacts, box."""
     like = next(read_dem(given.like, given)) if given.like else {}
@@ -134,15 +154,13 @@ def parser():
     parse.add_argument("--text", action="store_true", help="write text documents (JSON lines) instead of binary ones")
     parse.add_argument("--bonds",
                        choices=("cut", "ghosts"),
-                       default="ghosts",
                        help="VTU: leave bonds through periodic faces out, or draw them to ghosts of their particles (default)")
     parse.add_argument("--units",
                        choices=convert_lammps.LENGTHS,
                        help="LAMMPS style of units (default: what the file says, else si)")
     parse.add_argument("--atom-style",
                        choices=convert_lammps.ATOM_COLUMNS,
-                       default="sphere",
-                       help="of a data file that does not say it")
+                       help="of a data file that does not say it (default: sphere)")
     parse.add_argument("--boundary", metavar="ppp", type=boundary, help="p or f for each axis, where the file does not say it")
     parse.add_argument("--radius", type=quantity(LENGTH), help="of all particles, where the file has none, such as 50nm")
     parse.add_argument("--bond-radius", type=quantity(LENGTH), help="of all bonds, where the file has none")
@@ -161,14 +179,17 @@ def boundary(text):
 
 
 def main():
-    given = parser().parse_args()
+    parse = parser()
+    given = parse.parse_args()
     given.shown = [word for word in sys.argv[1:] if word not in (given.source, given.target, "--text")]
     given.units_given = given.units is not None
-    given.units = given.units or "si"
     try:
-        read = READERS[format_of(given.source, given.reads, READERS, "--from")]
-        write = WRITERS[format_of(given.target, given.writes, WRITERS, "--to")]
-        write(given.target, with_the_rest(read(given.source, given), given), given)
+        source = format_of(given.source, given.reads, READERS, "--from")
+        target = format_of(given.target, given.writes, WRITERS, "--to")
+        refuse_unused(parse, given, source, target)
+        given.units, given.bonds = given.units or "si", given.bonds or "ghosts"
+        given.atom_style = given.atom_style or "sphere"
+        WRITERS[target](given.target, with_the_rest(READERS[source](given.source, given), given), given)
     except BrokenPipeError:
         sys.stderr.close()  # the reader of the pipe has gone
         return 141
