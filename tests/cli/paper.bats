@@ -110,7 +110,7 @@ END
 }
 
 @test "other options make the run anew" {
-    cp -r . "$BATS_TEST_TMPDIR/copy"
+    cp -a . "$BATS_TEST_TMPDIR/copy"
     run -2 study OUT="$BATS_TEST_TMPDIR/copy" NECKS="--necks law" BONDIFY=false
     assert_output --partial "necks.kiln] Error 1"
     run -2 study OUT="$BATS_TEST_TMPDIR/copy" BONDING="--volume cap-corrected" BONDIFY=false
