@@ -1,4 +1,4 @@
-// dynamic_bending.cpp: punch of the punch, sampling of the curve and the balance of energy of the dynamic test.
+// dynamic_bending.cpp: motion of the punch, sampling of the curve and the balance of energy of the dynamic test.
 #include "bending/dynamic_bending.h"
 
 #include <algorithm>

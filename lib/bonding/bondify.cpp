@@ -95,8 +95,8 @@ Bonds shrink(State& state, const std::vector<Pair>& pairs, const std::vector<Ove
              Summary& summary, const Watch& watch) {
     Particles& particles = state.particles;
     ShrunkSpheres shrunk = options.method == Method::exact
-                        ? shrink_exactly(particles.radius, overlaps, options.sharing, watch)
-                        : shrink_by_sweeps(particles.radius, overlaps, options.sharing, options.decrement, watch);
+                               ? shrink_exactly(particles.radius, overlaps, options.sharing, watch)
+                               : shrink_by_sweeps(particles.radius, overlaps, options.sharing, options.decrement, watch);
     summary.stopped = shrunk.stopped;
     const long double before = solid_volume(particles.radius, {});
     const long double after = solid_volume(shrunk.radius, shrunk.volume);

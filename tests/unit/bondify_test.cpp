@@ -9,11 +9,13 @@
 
 #include "core/neighbours.h"
 #include "tests/physics/relative.h"
+#include "tests/unit/spheres.h"
 #include "bonding/bondify.h"
 #include "bonding/event_queue.h"
 
 using namespace kiln;
 using namespace kiln::bonding;
+using kiln::test::make_state;
 using kiln::test::relative;
 
 namespace {
@@ -21,19 +23,6 @@ namespace {
 double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-
-/// A state of spheres in a box of the given edge.
-State make_state(const std::vector<Vec3>& position, const std::vector<double>& radius, double edge, bool periodic) {
-    State state;
-    state.box.lengths = Vec3::Constant(edge);
-    state.box.periodic = {periodic, periodic, periodic};
-    state.particles.position = position;
-    state.particles.radius = radius;
-    state.particles.id.resize(radius.size());
-    std::iota(state.particles.id.begin(), state.particles.id.end(), 0);
-    state.particles.material.assign(radius.size(), 0);
-    return state;
-}
 
 /// Spheres of two to one in size on a disturbed cubic grid, each overlapping several others, periodic.
 State make_packing(int side, unsigned seed) {

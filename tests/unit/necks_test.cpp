@@ -13,26 +13,15 @@
 #include "physics/neck.h"
 #include "physics/sinter_contact.h"
 #include "tests/physics/relative.h"
+#include "tests/unit/spheres.h"
 
 using namespace kiln;
 using namespace kiln::bonding;
+using kiln::test::make_state;
 using kiln::test::relative;
 using std::numbers::pi;
 
 namespace {
-
-State make_state(const std::vector<Vec3>& position, const std::vector<double>& radius, double edge, bool periodic) {
-    State state;
-    state.materials.emplace_back();
-    state.box.lengths = Vec3::Constant(edge);
-    state.box.periodic = {periodic, periodic, periodic};
-    state.particles.position = position;
-    state.particles.radius = radius;
-    state.particles.id.resize(radius.size());
-    std::iota(state.particles.id.begin(), state.particles.id.end(), 0);
-    state.particles.material.assign(radius.size(), 0);
-    return state;
-}
 
 /// Spheres of radii between one and twice that on a disturbed cubic grid, periodic.
 State make_packing(int side, unsigned seed, double spacing) {

@@ -36,19 +36,19 @@ constexpr const char* conductivity_footer =
     "      analyze conductivity --model voxel --voxels 4,6 --conductivity 30W/m/K";
 
 const std::vector<Column> conductivity_network_columns{{"relative_density", "relative density", ""},
-                                          {"conductivity", "conductivity", "W/(m K)"},
-                                          {"bound", "upper bound", "W/(m K)"},
-                                          {"anisotropy", "anisotropy", ""},
-                                          {"coordination_number", "coordination number", ""},
-                                          {"iterations", "iterations", ""}};
+                                                       {"conductivity", "conductivity", "W/(m K)"},
+                                                       {"bound", "upper bound", "W/(m K)"},
+                                                       {"anisotropy", "anisotropy", ""},
+                                                       {"coordination_number", "coordination number", ""},
+                                                       {"iterations", "iterations", ""}};
 
 const std::vector<Column> conductivity_voxel_columns{{"relative_density", "relative density", ""},
-                                        {"union_fraction", "union", ""},
-                                        {"conductivity", "conductivity", "W/(m K)"},
-                                        {"extrapolation_error", "+-", "W/(m K)"},
-                                        {"bound", "upper bound", "W/(m K)"},
-                                        {"anisotropy", "anisotropy", ""},
-                                        {"iterations", "iterations", ""}};
+                                                     {"union_fraction", "union", ""},
+                                                     {"conductivity", "conductivity", "W/(m K)"},
+                                                     {"extrapolation_error", "+-", "W/(m K)"},
+                                                     {"bound", "upper bound", "W/(m K)"},
+                                                     {"anisotropy", "anisotropy", ""},
+                                                     {"iterations", "iterations", ""}};
 
 double anisotropy_of(const Eigen::Matrix3d& tensor) {
     const Vec3 principal = tensor.selfadjointView<Eigen::Lower>().eigenvalues();

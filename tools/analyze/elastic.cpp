@@ -46,21 +46,21 @@ constexpr const char* elastic_footer =
     "  analyze elastic --model voxel --image body.npy --young-modulus 400GPa --poisson-ratio 0.23";
 
 const std::vector<Column> elastic_network_columns{{"relative_density", "relative density", ""},
-                                          {"young_modulus", "Young's modulus", "Pa"},
-                                          {"poisson_ratio", "Poisson's ratio", ""},
-                                          {"anisotropy", "anisotropy", ""},
-                                          {"affine_young_modulus", "affine bound", "Pa"},
-                                          {"bond_law", "bond law", ""},
-                                          {"iterations", "iterations", ""}};
+                                                  {"young_modulus", "Young's modulus", "Pa"},
+                                                  {"poisson_ratio", "Poisson's ratio", ""},
+                                                  {"anisotropy", "anisotropy", ""},
+                                                  {"affine_young_modulus", "affine bound", "Pa"},
+                                                  {"bond_law", "bond law", ""},
+                                                  {"iterations", "iterations", ""}};
 
 const std::vector<Column> elastic_voxel_columns{{"relative_density", "relative density", ""},
-                                        {"union_fraction", "union", ""},
-                                        {"young_modulus", "Young's modulus", "Pa"},
-                                        {"extrapolation_error", "+-", "Pa"},
-                                        {"poisson_ratio", "Poisson's ratio", ""},
-                                        {"poisson_ratio_error", "+-", ""},
-                                        {"anisotropy", "anisotropy", ""},
-                                        {"iterations", "iterations", ""}};
+                                                {"union_fraction", "union", ""},
+                                                {"young_modulus", "Young's modulus", "Pa"},
+                                                {"extrapolation_error", "+-", "Pa"},
+                                                {"poisson_ratio", "Poisson's ratio", ""},
+                                                {"poisson_ratio_error", "+-", ""},
+                                                {"anisotropy", "anisotropy", ""},
+                                                {"iterations", "iterations", ""}};
 
 Json averages_json(const mechanics::Mat6& stiffness) {
     const mechanics::IsotropicAverage average = mechanics::isotropic_average(stiffness);
