@@ -139,11 +139,7 @@ int conductivity(int argc, char** argv) {
     const Watch watch{cli::stop_requested, [&](double fraction) { progress.show(fraction, "voxels"); }};
     const double solid = conductor.conductivity;
     if (!options.image.empty()) {
-        const voxel::Image image = read_image(options.image);
-        announce_memory<voxel::Conductor>("analyze conductivity", {image.count}, common);
-        const voxel::OnGrid found = cli::at_place(options.image, [&] {
-            return voxel::of_image(image, std::vector{voxel::Conductor{solid}}, options.tolerance, watch);
-        });
+        const voxel::OnGrid found = solve_image("analyze conductivity", options, voxel::Conductor{solid}, common, watch);
         add(of_voxels({found}, found.union_fraction, solid, voxel::Order::first));
     } else {
         io::Input input(common.files, cli::stop_requested);
@@ -152,10 +148,9 @@ int conductivity(int argc, char** argv) {
                 add(of_network(state, conductor, options.tolerance));
                 return true;
             }
-            const auto grids = voxel::grids_of(state, options.voxels);
-            announce_memory<voxel::Conductor>("analyze conductivity", grids, common);
-            add(of_voxels(voxel::on_grids(state, voxel::conducting_phases(state, solid), grids, options.tolerance, watch),
-                          relative_density(state), solid, order_of(state)));
+            add(of_voxels(
+                solve_state("analyze conductivity", options, state, voxel::conducting_phases(state, solid), common, watch),
+                relative_density(state), solid, order_of(state)));
             return true;
         });
     }

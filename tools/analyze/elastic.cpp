@@ -170,11 +170,7 @@ int elastic(int argc, char** argv) {
     cli::Progress progress("analyze elastic", common);
     const Watch watch{cli::stop_requested, [&](double fraction) { progress.show(fraction, "voxels"); }};
     if (!options.image.empty()) {
-        const voxel::Image image = read_image(options.image);
-        announce_memory<voxel::Solid>("analyze elastic", {image.count}, common);
-        const voxel::OnGrid found = cli::at_place(options.image, [&] {
-            return voxel::of_image(image, std::vector{voxel::solid(young, poisson)}, options.tolerance, watch);
-        });
+        const voxel::OnGrid found = solve_image("analyze elastic", options, voxel::solid(young, poisson), common, watch);
         add(of_voxels({found}, found.union_fraction, voxel::Order::first));
     } else {
         io::Input input(common.files, cli::stop_requested);
@@ -183,11 +179,8 @@ int elastic(int argc, char** argv) {
                 add(of_network(state, model, options.tolerance));
                 return true;
             }
-            const voxel::Phases<voxel::Solid> phases = voxel::elastic_phases(state);
-            const auto grids = voxel::grids_of(state, options.voxels);
-            announce_memory<voxel::Solid>("analyze elastic", grids, common);
-            add(of_voxels(voxel::on_grids(state, phases, grids, options.tolerance, watch), relative_density(state),
-                          order_of(state)));
+            add(of_voxels(solve_state("analyze elastic", options, state, voxel::elastic_phases(state), common, watch),
+                          relative_density(state), order_of(state)));
             return true;
         });
     }

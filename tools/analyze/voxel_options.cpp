@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "io/voxel_image.h"
+#include "tools/common/each_state.h"
 #include "tools/common/quantity_options.h"
 #include "tools/common/value_options.h"
 
@@ -83,6 +84,8 @@ void VoxelOptions::check(const CLI::App& app, const std::vector<std::string>& of
     if (!common.files.empty()) throw CLI::ValidationError("--image", "is read in the place of states, and there is a FILE too");
 }
 
+namespace {
+
 voxel::Image read_image(const std::string& file) {
     io::ByteImage bytes = io::read_npy_mask(file);
     voxel::Image image;
@@ -105,9 +108,31 @@ void announce_memory(const std::string& tool, const std::vector<std::array<std::
     }
 }
 
-template void announce_memory<voxel::Solid>(const std::string&, const std::vector<std::array<std::size_t, 3>>&, const cli::Common&);
-template void announce_memory<voxel::Conductor>(const std::string&, const std::vector<std::array<std::size_t, 3>>&,
-                                                const cli::Common&);
+}  // namespace
+
+template <typename Medium>
+voxel::OnGrid solve_image(const std::string& tool, const VoxelOptions& options, const Medium& medium, const cli::Common& common,
+                          const Watch& watch) {
+    const voxel::Image image = read_image(options.image);
+    announce_memory<Medium>(tool, {image.count}, common);
+    return cli::at_place(options.image, [&] { return voxel::of_image(image, std::vector{medium}, options.tolerance, watch); });
+}
+
+template <typename Medium>
+std::vector<voxel::OnGrid> solve_state(const std::string& tool, const VoxelOptions& options, const State& state,
+                                       const voxel::Phases<Medium>& phases, const cli::Common& common, const Watch& watch) {
+    const auto grids = voxel::grids_of(state, options.voxels);
+    announce_memory<Medium>(tool, grids, common);
+    return voxel::on_grids(state, phases, grids, options.tolerance, watch);
+}
+
+template voxel::OnGrid solve_image(const std::string&, const VoxelOptions&, const voxel::Solid&, const cli::Common&, const Watch&);
+template voxel::OnGrid solve_image(const std::string&, const VoxelOptions&, const voxel::Conductor&, const cli::Common&,
+                                   const Watch&);
+template std::vector<voxel::OnGrid> solve_state(const std::string&, const VoxelOptions&, const State&,
+                                                const voxel::Phases<voxel::Solid>&, const cli::Common&, const Watch&);
+template std::vector<voxel::OnGrid> solve_state(const std::string&, const VoxelOptions&, const State&,
+                                                const voxel::Phases<voxel::Conductor>&, const cli::Common&, const Watch&);
 
 Limits::Limits(const std::vector<voxel::OnGrid>& grids, voxel::Order order) : order_(order) {
     for (const voxel::OnGrid& grid : grids) {

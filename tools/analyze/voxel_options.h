@@ -35,13 +35,16 @@ struct VoxelOptions {
                const cli::Common& common);
 };
 
-/// An image from a .npy file, of cubes.
-voxel::Image read_image(const std::string& file);
-
-/// Says on standard error what memory the grids take: with -v always, else where it is more than a gigabyte. Throws Error if the
-/// machine has less.
+/// The tensor of the image of the options, a .npy file of cubes, whose solid is one medium. Says on standard error what memory it
+/// takes: with -v always, else where it is more than a gigabyte. Throws Error if the machine has less.
 template <typename Medium>
-void announce_memory(const std::string& tool, const std::vector<std::array<std::size_t, 3>>& grids, const cli::Common& common);
+voxel::OnGrid solve_image(const std::string& tool, const VoxelOptions& options, const Medium& medium, const cli::Common& common,
+                          const Watch& watch);
+
+/// The tensors of a state on the grids of the options; memory likewise.
+template <typename Medium>
+std::vector<voxel::OnGrid> solve_state(const std::string& tool, const VoxelOptions& options, const State& state,
+                                       const voxel::Phases<Medium>& phases, const cli::Common& common, const Watch& watch);
 
 /// Extrapolation of one number of each grid: the value, and its error, null for one grid.
 struct Limit {
