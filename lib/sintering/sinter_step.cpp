@@ -21,7 +21,7 @@ constexpr double min_tangent = 0.1;        // of the tangent at a pair's own end
 constexpr double max_linear = 0.1;         // error of the linear solves, loosest and tightest
 constexpr double min_linear = 1e-3;
 constexpr int max_factorisations = 2;      // in one minimisation; later the tangents hardly change
-constexpr double linear_fraction = 0.6;    // of the tolerance, that is left to linear solves
+constexpr double linear_fraction = 0.5;    // of the tolerance, that is left to linear solves
 constexpr double imbalance_factor = 30.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
 constexpr double min_single = 1e-3;        // a tenth of it is typical; within these bounds
 constexpr double max_single = 0.5;
@@ -190,14 +190,15 @@ void SinterStep::forces(const Motion& motion, bool secant) {
 
 double SinterStep::imbalance(const Motion& motion) const {
     std::vector<double> exerted(rows_.size());
-    Vec3 on_box = pressure_volume_.cwiseAbs();
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for_rows(rows_.size(), [&](std::size_t row) {
         // Of a pair that touches for a part of the step the whole sintering force: the part may be next to nothing.
         const double approach = -rows_[row].normal.dot(relative(row, motion));
         const double resistance = pair_resistance(rows_[row].cubic, rows_[row].overlap, approach);
         exerted[row] = step_[row].force + std::abs(resistance) + (limits_.any() ? limits_.reaction(row, approach) : 0.0);
+    });
+    Vec3 on_box = pressure_volume_.cwiseAbs();
+    for (std::size_t row = 0; row < rows_.size(); ++row)
         on_box += exerted[row] * rows_[row].normal.cwiseProduct(branch_[row]).cwiseAbs();
-    }
     // On the box: what its axes share out among those that strain together.
     on_box = settings_.allowed_strain.cwiseAbs() * on_box;
     double worst = max_imbalance(pairs_, exerted, coarse_, unbalanced_);
