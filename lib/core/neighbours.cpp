@@ -184,8 +184,10 @@ void add_if_near(const Box& box, const Entry& entry, const Entry& other, std::ar
     pairs.push_back(pair);
 }
 
-/// Pairs of an entry with the particles of a grid; in the grid of its own class only those with rows from its own on.
-void search(const Box& box, const Frame& frame, const Entry& entry, const Grid& grid, bool same_class, std::vector<Pair>& pairs) {
+/// Pairs of an entry with the particles of a grid, without those that `searches_too` says look for it and have lower rows.
+template <typename SearchesToo>
+void search(const Box& box, const Frame& frame, const Entry& entry, const Grid& grid, const SearchesToo& searches_too,
+            std::vector<Pair>& pairs) {
     const std::array<Visit, 3> visit{visit_axis(frame, grid, entry, 0), visit_axis(frame, grid, entry, 1),
                                      visit_axis(frame, grid, entry, 2)};
     std::array<std::int64_t, 3> image;
@@ -200,7 +202,7 @@ void search(const Box& box, const Frame& frame, const Entry& entry, const Grid& 
                 const std::size_t place = grid.place(cell);
                 for (std::size_t at = grid.begin[place]; at < grid.begin[place + 1]; ++at) {
                     const Entry& other = grid.entries[at];
-                    if (other.cell != cell || (same_class && other.row < entry.row)) continue;
+                    if (other.cell != cell || (other.row < entry.row && searches_too(other.row))) continue;
                     add_if_near(box, entry, other, image, pairs);
                 }
             }
@@ -214,7 +216,7 @@ std::vector<Pair> search_chunk(const Box& box, const Frame& frame, std::span<con
     std::vector<Pair> pairs;
     for (std::size_t at = first; at < last; ++at)
         for (std::size_t level = 0; level < from_own.size(); ++level)
-            search(box, frame, from_own.front().entries[at], from_own[level], level == 0, pairs);
+            search(box, frame, from_own.front().entries[at], from_own[level], [&](std::int32_t) { return level == 0; }, pairs);
     return pairs;
 }
 
@@ -230,6 +232,24 @@ std::vector<Pair> sorted_pairs(std::span<const std::vector<Pair>> chunks, std::s
                   pairs.items.begin() + static_cast<std::ptrdiff_t>(pairs.begin[row + 1]),
                   [](const Pair& a, const Pair& b) { return a.j != b.j ? a.j < b.j : a.image < b.image; });
     return std::move(pairs.items);
+}
+
+/// Searches the chunks of all tasks on all threads; search(task) gives a chunk's pairs. Sorted by i, then j, then image.
+template <typename Search>
+std::vector<Pair> search_tasks(std::size_t tasks, std::size_t particles, const Search& search) {
+    std::vector<std::vector<Pair>> chunks(tasks);
+    std::vector<std::string> errors(tasks);
+#pragma omp parallel for schedule(dynamic) if (tasks >= worth_threads)
+    for (std::size_t task = 0; task < tasks; ++task) {
+        try {  // an exception must not leave a parallel loop
+            chunks[task] = search(task);
+        } catch (const Error& error) {
+            errors[task] = error.what();
+        }
+    }
+    for (const std::string& error : errors)
+        if (!error.empty()) throw Error(error);
+    return sorted_pairs(chunks, particles);
 }
 
 void check(const Box& box, std::span<const Vec3> position, std::span<const double> reach) {
@@ -264,20 +284,28 @@ std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std
         for (std::size_t first = 0; first < grids[grid].entries.size(); first += chunk_particles)
             tasks.push_back({grid, first, std::min(first + chunk_particles, grids[grid].entries.size())});
 
-    std::vector<std::vector<Pair>> chunks(tasks.size());
-    std::vector<std::string> errors(tasks.size());
-#pragma omp parallel for schedule(dynamic) if (tasks.size() >= worth_threads)
-    for (std::size_t task = 0; task < tasks.size(); ++task) {
-        try {  // an exception must not leave a parallel loop
-            chunks[task] =
-                search_chunk(box, frame, std::span(grids).subspan(tasks[task].grid), tasks[task].first, tasks[task].last);
-        } catch (const Error& error) {
-            errors[task] = error.what();
-        }
-    }
-    for (const std::string& error : errors)
-        if (!error.empty()) throw Error(error);
-    return sorted_pairs(chunks, position.size());
+    return search_tasks(tasks.size(), position.size(), [&](std::size_t task) {
+        return search_chunk(box, frame, std::span(grids).subspan(tasks[task].grid), tasks[task].first, tasks[task].last);
+    });
+}
+
+std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std::span<const double> reach,
+                             std::span<const std::int32_t> of) {
+    check(box, position, reach);
+    if (of.empty()) return {};
+    const Frame frame = frame_of(box, position);
+    const std::vector<Grid> grids = build_grids(frame, position, reach);
+    std::vector<std::uint8_t> chosen(position.size(), 0);
+    for (const std::int32_t row : of) chosen[static_cast<std::size_t>(row)] = 1;
+    const auto searches_too = [&](std::int32_t row) { return chosen[static_cast<std::size_t>(row)] != 0; };
+    return search_tasks(of.size(), position.size(), [&](std::size_t task) {
+        const auto row = static_cast<std::size_t>(of[task]);
+        Entry entry{position[row], reach[row], 0, {0, 0, 0}, of[task]};
+        for (int axis = 0; axis < 3; ++axis) frame.fraction(entry.position[axis], axis, entry.home[static_cast<std::size_t>(axis)]);
+        std::vector<Pair> pairs;
+        for (const Grid& grid : grids) search(box, frame, entry, grid, searches_too, pairs);
+        return pairs;
+    });
 }
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace kiln {
 struct Pair {
     std::int32_t i, j;
     Image image;
+
+    friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
 /// All pairs, periodic images included, with |x_j + image L - x_i| < reach_i + reach_j.
@@ -21,6 +24,11 @@ struct Pair {
 /// many images as it takes. Sorted by i, then j, then image; the order does not depend on the number of threads.
 /// Throws Error where an image index leaves the range of a signed byte.
 std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std::span<const double> reach);
+
+/// Those of these pairs in which one of the particles `of` takes part, rows of position, each once. Made for a few particles: the
+/// search of each is its own, whatever the number of the others.
+std::vector<Pair> find_pairs(const Box& box, std::span<const Vec3> position, std::span<const double> reach,
+                             std::span<const std::int32_t> of);
 
 /// Vector from i to the image of j, m.
 inline Vec3 pair_vector(const Box& box, std::span<const Vec3> position, const Pair& pair) {

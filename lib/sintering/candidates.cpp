@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 #include <utility>
 
 namespace kiln::sintering {
@@ -77,7 +76,6 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     };
     const std::vector<Pair>& list = body_.pairs();
     const std::vector<Pair> before = keep ? std::move(chosen_) : std::vector<Pair>{};
-    const auto order = [](const Pair& a, const Pair& b) { return std::tie(a.i, a.j, a.image) < std::tie(b.i, b.j, b.image); };
     std::vector<std::uint8_t> kind(list.size());  // 0 out, 1 apart, 2 touching, 3 sticking
     for_rows(list.size(), [&](std::size_t row) {
         const Pair& pair = list[row];
@@ -86,7 +84,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
             kind[row] = 3;
         else if (start >= 0.0)
             kind[row] = 2;
-        else if (keep && std::binary_search(before.begin(), before.end(), pair, order))
+        else if (keep && std::binary_search(before.begin(), before.end(), pair))
             kind[row] = 1;
         else if (start + reach > 0.0 || start + guess_margin * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double list_margin = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
 constexpr double margin_ahead = 2.0;    // of the travel of a fast particle, that the margin leaves
+constexpr std::size_t few = 100;        // of so many particles one may need a new list and the others keep theirs
 constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
 
 }  // namespace
@@ -38,11 +39,33 @@ void SinteringBody::list_pairs(double margin) {
     find_pairs();
 }
 
+std::vector<double> SinteringBody::reaches() const {
+    std::vector<double> reach = state_.particles.radius;
+    for (std::size_t row = 0; row < size(); ++row) reach[row] += std::max(margin_[row], 0.0);
+    return reach;
+}
+
 void SinteringBody::find_pairs() {
+    pairs_ = kiln::find_pairs(state_.box, state_.particles.position, reaches());
+    took_list();
+}
+
+/// Lists the pairs of a few particles anew: the others' margins and pairs among themselves hold on.
+void SinteringBody::find_pairs_of(const std::vector<std::int32_t>& few) {
+    const std::vector<Pair> of_few = kiln::find_pairs(state_.box, state_.particles.position, reaches(), few);
+    std::vector<std::uint8_t> listed(size(), 0);
+    for (const std::int32_t row : few) listed[static_cast<std::size_t>(row)] = 1;
+    std::erase_if(pairs_, [&](const Pair& pair) {
+        return listed[static_cast<std::size_t>(pair.i)] != 0 || listed[static_cast<std::size_t>(pair.j)] != 0;
+    });
+    const auto others = static_cast<std::ptrdiff_t>(pairs_.size());
+    pairs_.insert(pairs_.end(), of_few.begin(), of_few.end());
+    std::inplace_merge(pairs_.begin(), pairs_.begin() + others, pairs_.end());
+    took_list();
+}
+
+void SinteringBody::took_list() {
     const Particles& particles = state_.particles;
-    std::vector<double> reach = particles.radius;
-    for (std::size_t row = 0; row < size(); ++row) reach[row] += margin_[row];
-    pairs_ = kiln::find_pairs(state_.box, particles.position, reach);
     min_margin_ = *std::min_element(margin_.begin(), margin_.end());
     ++lists_;
     for (const Pair& pair : pairs_) {
@@ -60,13 +83,19 @@ double SinteringBody::travel(std::size_t row, const Motion& motion) const {
 }
 
 void SinteringBody::cover(const Motion& motion, double factor) {
-    bool covered = true;
-#pragma omp parallel for schedule(static) reduction(&& : covered) if (size() >= worth_threads)
-    for (std::size_t row = 0; row < size(); ++row) covered = covered && factor * travel(row, motion) <= margin_[row];
-    if (covered) return;
-    for (std::size_t row = 0; row < size(); ++row)
+    std::vector<std::uint8_t> beyond(size());
+    std::size_t count = 0;
+#pragma omp parallel for schedule(static) reduction(+ : count) if (size() >= worth_threads)
+    for (std::size_t row = 0; row < size(); ++row) count += beyond[row] = factor * travel(row, motion) > margin_[row];
+    if (count == 0) return;
+    const bool all = count > size() / few;
+    std::vector<std::int32_t> rows;
+    for (std::size_t row = 0; row < size(); ++row) {
+        if (!all && beyond[row] == 0) continue;
         margin_[row] = std::clamp(margin_ahead * factor * travel(row, motion), list_margin * mean_radius_, mean_radius_);
-    find_pairs();
+        rows.push_back(static_cast<std::int32_t>(row));
+    }
+    all ? find_pairs() : find_pairs_of(rows);
 }
 
 double SinteringBody::approach_bound(const Motion& motion) const {

@@ -67,7 +67,10 @@ class SinteringBody {
     void restore(const Box& box, std::vector<Vec3> position, double time, double temperature, const Vec3& strain);
 
    private:
+    std::vector<double> reaches() const;  // m, of each particle: radius and margin
     void find_pairs();
+    void find_pairs_of(const std::vector<std::int32_t>& few);
+    void took_list();
     double travel(std::size_t row, const Motion& motion) const;
     Vec3 body_stretch(const Motion& motion) const;
 
