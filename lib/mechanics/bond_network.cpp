@@ -116,7 +116,7 @@ physics::BondLaw law_for(const State& state, const BondModel& model) {
     return necks ? physics::BondLaw::solid : physics::BondLaw::series;
 }
 
-BondedPiece max_piece(const State& state) {
+BondedPiece largest_piece(const State& state) {
     if (!state.bonds || state.bonds->size() == 0) throw Error("the state has no bonds; run bondify first");
     const std::vector<std::int32_t> carrying = carrying_bonds(state);
     if (carrying.empty()) throw Error("no bond of the state is thick enough to carry a load");
@@ -150,7 +150,7 @@ BondedPiece max_piece(const State& state) {
 BondedBody bonded_body(const State& state, const BondModel& model) {
     if (!state.bonds || state.bonds->size() == 0) throw Error("the state has no bonds; run bondify first");
     const std::vector<Moduli> moduli = moduli_of(state.materials);
-    BondedBody body{max_piece(state), {}, {law_for(state, model), model.shear}};
+    BondedBody body{largest_piece(state), {}, {law_for(state, model), model.shear}};
     const bool solid = body.model.law == physics::BondLaw::solid;
     if (solid && model.shear)
         throw Error("the bonds are necks, and the law solid for them has a shear of its own: choose another law, or no shear");

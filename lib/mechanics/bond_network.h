@@ -56,7 +56,7 @@ struct BondedPiece {
 
 /// Nodes in an order that keeps neighbours together, from low x to high x. Throws Error for a state without bonds, or whose bonds
 /// are all negligible.
-BondedPiece max_piece(const State& state);
+BondedPiece largest_piece(const State& state);
 
 /// The largest piece as a network of springs.
 struct BondedBody : BondedPiece {

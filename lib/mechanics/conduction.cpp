@@ -242,7 +242,7 @@ Conductivity conductivity(const State& state, double solid_fraction, const Condu
     const auto& periodic = state.box.periodic;
     if (!std::ranges::all_of(periodic, [](bool axis) { return axis; }))
         throw Error("the box is not periodic along all axes, so the state has no conductivity of its own");
-    const BondedPiece piece = max_piece(state);
+    const BondedPiece piece = largest_piece(state);
     const Conductors network = conductors_of(state, piece, solid_fraction, conductor);
     Conductivity result;
     result.fragments = piece.fragments;

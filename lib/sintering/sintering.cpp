@@ -24,9 +24,12 @@ std::vector<double> column_of(const std::vector<NamedArray>& arrays, const std::
 
 SinteringMethod::SinteringMethod(State state, const SinteringSettings& settings)
     : settings_(settings), body_(std::move(state), settings.faces), kinetics_(body_.working(), settings.schedule) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (settings_.fixed[axis] && !body_.box().periodic[axis])
+            throw Error(std::string("the box has no faces to hold along ") + "xyz"[axis] + ", which is not periodic");
         if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !body_.box().periodic[axis]))
             throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
+    }
 }
 
 double number_at(const Numbers& numbers, const std::string& name) { return list_at(numbers, name, 1).front(); }

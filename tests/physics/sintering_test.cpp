@@ -207,3 +207,12 @@ TEST_CASE("a pressure that has no face to act on is refused by every method") {
     CHECK_THROWS_WITH_AS(ImplicitSintering(random_packing(20, 0.5, 1.0), wanted), doctest::Contains("moves nothing"), Error);
     CHECK_THROWS_WITH_AS(ExplicitSintering(random_packing(20, 0.5, 1.0), wanted), doctest::Contains("moves nothing"), Error);
 }
+
+TEST_CASE("an axis that is not periodic has no faces to hold, by every method") {
+    SinteringSettings wanted = settings();
+    wanted.fixed = {false, true, false};
+    State state = random_packing(20, 0.5, 1.0);
+    state.box.periodic[1] = false;
+    CHECK_THROWS_WITH_AS(ImplicitSintering(state, wanted), doctest::Contains("no faces to hold along y"), Error);
+    CHECK_THROWS_WITH_AS(ExplicitSintering(state, wanted), doctest::Contains("no faces to hold along y"), Error);
+}

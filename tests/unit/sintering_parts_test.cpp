@@ -114,6 +114,29 @@ TEST_CASE("coarse spaces: one set of clusters for each step in the contrast of t
     CHECK(nodes({0.0, 1.0, 1e6}) == std::vector<std::size_t>{3});  // one that does not touch ties nothing
 }
 
+TEST_CASE("sintering body: where one particle runs on, its pairs are listed anew and the others' still hold all that touch") {
+    std::vector<double> places;
+    for (int sphere = 0; sphere < 200; ++sphere) places.push_back(2.2 * sphere);  // gaps of 0.2
+    SinteringBody body(row_of_spheres(places, false, 1000.0), Faces::as_given);
+    Motion motion(200);
+    for (std::size_t row = 0; row < 200; ++row) {
+        motion.displacement[3 * row] = body.particles().id[row] % 2 == 0 ? -0.005 : 0.005;
+        if (body.particles().id[row] == 7) motion.displacement[3 * row + 1] = 0.4;
+        if (body.particles().id[row] == 8) motion.displacement[3 * row] = -0.55;
+    }
+    const std::vector<Pair> before = body.pairs();
+    for (int step = 0; step < 12; ++step) {  // number 8 passes over number 7, between others that have used up most of their margin
+        body.cover(motion);
+        body.apply(motion, 1.0 + step, 1473.15);
+        const std::vector<Pair> touching = find_pairs(body.box(), body.particles().position, body.particles().radius);
+        CHECK(std::ranges::includes(body.pairs(), touching));
+        CHECK(std::ranges::is_sorted(body.pairs()));
+    }
+    CHECK(body.lists() > 3);
+    CHECK(body.lists() < 14);
+    CHECK(body.pairs() != before);
+}
+
 TEST_CASE("candidates: pairs that touch, pairs that a motion brings to touch, and the check that none was left out") {
     const SinteringBody body(row_of_spheres({10.0, 11.99, 14.05, 16.3}), Faces::as_given);  // overlap 0.01, gaps 0.06 and 0.25
     const Kinetics kinetics(body.working(), physics::Schedule::hold(1473.15));
