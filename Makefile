@@ -123,10 +123,11 @@ $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libkiln.a
 include demo.mk checks.mk tests/fuzz/fuzz.mk packaging/package.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-# Test cases run once, and programs only read, ask the library and write: quick to compile counts for more than quick to run.
+# Test cases run once, programs read, ask the library and write, and lib/io waits for the disk: quick to compile counts for more
+# than quick to run.
 $(BUILD)/tests/%: OPTIMISE := -O1
 $(BUILD)/tests/%: WARNINGS := $(filter-out -Wshadow,$(WARNINGS))
-$(BUILD)/tools/%: OPTIMISE := -O1 -DNDEBUG
+$(BUILD)/tools/% $(BUILD)/lib/io/%: OPTIMISE := -O1 -DNDEBUG
 
 # ---- tests --------------------------------------------------------------------------------------------------------------------
 test: $(BUILD)/neighbours-present all $(BUILD)/test/unit  ## build and run all tests; ends with "N passed, M failed"
