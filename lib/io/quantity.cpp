@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/types.h"
 
@@ -33,13 +34,18 @@ constexpr Unit units[] = {
     {Dimension::volume, "l", 1.0, 1e3},
     {Dimension::time, "s", 1.0},
     {Dimension::time, "ms", 1.0, 1e3},
+    {Dimension::time, "us", 1.0, 1e6},
     {Dimension::time, "min", 60.0},
     {Dimension::time, "h", 3600.0},
+    {Dimension::time, "d", 86400.0},
     {Dimension::temperature, "K", 1.0},
     {Dimension::temperature, "C", 1.0, 1.0, zero_celsius},
     {Dimension::heating_rate, "K/s", 1.0},
     {Dimension::heating_rate, "K/min", 1.0, 60.0},
     {Dimension::heating_rate, "K/h", 1.0, 3600.0},
+    {Dimension::heating_rate, "C/s", 1.0},
+    {Dimension::heating_rate, "C/min", 1.0, 60.0},
+    {Dimension::heating_rate, "C/h", 1.0, 3600.0},
     {Dimension::pressure, "Pa", 1.0},
     {Dimension::pressure, "kPa", 1e3},
     {Dimension::pressure, "MPa", 1e6},
@@ -72,6 +78,32 @@ constexpr Unit units[] = {
     {Dimension::area_resistance, "mm2K/W", 1.0, 1e6},
 };
 
+constexpr double room_temperature = 298.15;  // K, what "RT" says: 25 C
+
+/// Signs that keyboards, spreadsheets and instruments write, and how the table above spells them.
+constexpr std::pair<std::string_view, std::string_view> spellings[] = {
+    {"\u00b5", "u"},      // the micro sign
+    {"\u03bc", "u"},      // the Greek letter
+    {"\u2103", "C"},      // degree Celsius in one sign
+    {"\u00b0C", "C"},
+    {"\u00baC", "C"},     // an ordinal sign, of keyboards that have no degree sign
+    {"degC", "C"},
+    {"deg C", "C"},
+    {"\u00b0 C", "C"},
+    {"\u00b0", "deg"},
+    {"\u00b2", "2"},
+    {"\u00b3", "3"},
+    {"^", ""},
+};
+
+std::string spelled(std::string_view given) {
+    std::string name(given);
+    for (const auto& [sign, plain] : spellings)
+        for (std::size_t at = name.find(sign); at != std::string::npos; at = name.find(sign, at + plain.size()))
+            name.replace(at, sign.size(), plain);
+    return name;
+}
+
 }  // namespace
 
 std::string known_units(Dimension dimension) {
@@ -85,12 +117,14 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     const std::string given = std::string("'").append(text) + "'";
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    if (dimension == Dimension::temperature && text == "RT") return room_temperature;
     double number = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::result_out_of_range) throw TextError(given + " is out of the range of numbers");
     if (error != std::errc() || !std::isfinite(number)) throw TextError(given + " is not a number");
-    std::string_view name = text.substr(static_cast<std::size_t>(end - text.data()));
-    while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
+    std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
+    while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
+    const std::string name = spelled(rest);
     if (dimension == Dimension::none) {
         if (!name.empty()) throw TextError(given + " has a unit where a plain number is required");
         return number;

@@ -27,8 +27,9 @@ enum class Dimension {
     area_resistance,   // m2 K/W, of an area to heat
 };
 
-/// SI value of a text such as "50nm". Upper and lower case count. Throws TextError that says what was given and which
-/// units are known.
+/// SI value of a text such as "50nm", "1200°C" or "0.35 µm". Upper and lower case count; the degree sign, both micro signs and
+/// superscripts are read as the units of the list are spelled, and RT is a temperature of 25 C. Throws TextError that says what was
+/// given and which units are known.
 double parse_quantity(std::string_view text, Dimension dimension);
 
 /// The units of a dimension, for help texts: "m, mm, um, nm".

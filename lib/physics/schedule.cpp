@@ -53,8 +53,11 @@ std::vector<double> Schedule::panels(double from, double until) const {
         for (int panel = 1; panel < count; ++panel) ends.push_back(begin + (time - begin) * panel / count);
         ends.push_back(time);
     };
-    for (const Corner& corner : corners_)
-        if (corner.time > from && corner.time < until) reach(corner.time);
+    // A furnace's log has thousands of corners, and most spans lie between two of them.
+    for (auto corner = std::ranges::upper_bound(corners_, from, {}, &Corner::time); corner != corners_.end(); ++corner) {
+        if (!(corner->time < until)) break;
+        reach(corner->time);
+    }
     if (until > from) reach(until);
     return ends;
 }

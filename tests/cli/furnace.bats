@@ -43,9 +43,21 @@ slow() {
     near "$(density schedule.kiln 0)" "$(density hold.kiln 0)" 1e-9
 }
 
+@test "a schedule in the words of a laboratory is the same schedule" {
+    "$SINTER" --schedule "25C 10K/min 1150C 10min 20K/min 25C" --text -o plain.jsonl green.kiln
+    "$SINTER" --schedule "RT 10C/min 1150°C 10 min 1200 C/h RT" --text -o spoken.jsonl green.kiln
+    run -0 cmp <(jq -c .particles spoken.jsonl) <(jq -c .particles plain.jsonl)
+    "$SINTER" --temperature 1200°C --at-time 250000us,0.00001d --text -o hold.jsonl green.kiln
+    run -0 jq -se "map(.time * 1000 | round) == [250, 864]" hold.jsonl
+    run -2 "$SINTER" --schedule "25C 10k/min 1150C" green.kiln
+    assert_output --partial "a rate [K/s, K/min, K/h, C/s, C/min, C/h] or the time of a hold [s, ms, us, min, h, d]"
+    run -2 "$SINTER" --temperature 1200F --at-time 1s green.kiln
+    assert_output --partial "known here: K, C"
+}
+
 @test "spheres that only just touch sinter; a packing without any contact warns" {
     touching='{"format":"dem-state","version":1,"units":"SI","box":{"origin":[0,0,0],"vectors":[[1.414213562373096e-7,0,0],[0,1.414213562373096e-7,0],[0,0,1.414213562373096e-7]],"periodic":[true,true,true]},"particles":{"position":{"type":"f8","shape":[4,3],"data":[0,0,0,7.07106781186548e-8,7.07106781186548e-8,0,7.07106781186548e-8,0,7.07106781186548e-8,0,7.07106781186548e-8,7.07106781186548e-8]},"radius":{"type":"f8","shape":[4],"data":[5e-8,5e-8,5e-8,5e-8]}}}'
-    run -0 --separate-stderr "$SINTER" --temperature 1200C --at-time 10s -o fcc.kiln <<<"$touching"
+    run -0 --separate-stderr "$SINTER" --temperature 1200C --at-time 10s --material alumina -o fcc.kiln <<<"$touching"
     assert_equal "$stderr" ""
     near "$(density fcc.kiln 0)" 0.860176 1e-4  # 0.74048/(1 - s)^3, s^3 = 0.84375 Delta gamma t/R^4
     run -0 --separate-stderr "$SINTER" --temperature 1200C --at-time 70s -o apart.kiln <<<"${touching//5e-8/4.9e-8}"

@@ -40,6 +40,39 @@ TEST_CASE("words of a schedule that do not fit are named") {
     CHECK_THROWS_WITH_AS(io::parse_schedule("25C 1200C"), doctest::Contains("'1200C'"), TextError);
 }
 
+TEST_CASE("a schedule in a laboratory's words is the same schedule") {
+    for (const char* text : {"RT 10C/min 1200C 10min 20C/min RT", "25 °C 10 °C/min 1200 °C 10 min 20 K/min 25 °C",
+                             "298.15K 600K/h 1473.15 K 600s 1200 C/h 25degC"}) {
+        CAPTURE(text);
+        const physics::Schedule same = io::parse_schedule(text);
+        CHECK(deviation(same.end(), firing.end()) < 1e-14);
+        for (double time = 0.0; time < firing.end(); time += 100.0)
+            CHECK(deviation(same.temperature(time), firing.temperature(time)) < 1e-13);
+    }
+    CHECK(io::parse_schedule("RT 1d").end() == 86400.0);
+    CHECK(deviation(io::parse_schedule("RT 20 us").end(), 20e-6) < 1e-14);
+}
+
+TEST_CASE("a word of a schedule that does not fit is refused with the units that would") {
+    CHECK_THROWS_WITH_AS(io::parse_schedule("25F 10K/min 1200C"),
+                         doctest::Contains("'25F' stands where a temperature [K, C or RT] is required"), TextError);
+    CHECK_THROWS_WITH_AS(
+        io::parse_schedule("25C 10k/min 1200C"),
+        doctest::Contains("a rate [K/s, K/min, K/h, C/s, C/min, C/h] or the time of a hold [s, ms, us, min, h, d]"), TextError);
+    CHECK_THROWS_WITH_AS(io::parse_schedule("25C 10 1200C"), doctest::Contains("'10' stands where a rate"), TextError);
+    CHECK_THROWS_WITH_AS(io::parse_schedule("25C 10K/min 1200 1h"), doctest::Contains("'1200' stands where the temperature"),
+                         TextError);
+}
+
+TEST_CASE("the integral over a log of ten thousand rows is that of the ramp they lie on") {
+    std::vector<physics::Schedule::Corner> rows;
+    for (int row = 0; row <= 10000; ++row) rows.push_back({0.705 * row, 298.15 + 0.1175 * row});
+    const physics::Schedule log(rows), ramp({rows.front(), rows.back()});
+    const auto arrhenius = [](double temperature) { return std::exp(-57000.0 / temperature); };
+    for (const auto& [from, until] : {std::pair(0.0, 7050.0), {6000.1, 6000.2}, {6999.0, 7049.9}})
+        CHECK(deviation(log.integral(from, until, arrhenius), ramp.integral(from, until, arrhenius)) < 1e-12);
+}
+
 TEST_CASE("diffusion over a ramp is the exponential integral to rounding") {
     const State state = state_of({{0, 0, 0}}, {50e-9}, Vec3::Constant(1e-6), true);
     const sintering::Kinetics kinetics(state, firing);

@@ -5,11 +5,13 @@
 
 #include "core/types.h"
 #include "io/quantity.h"
+#include "tests/physics/relative.h"
 
 namespace {
 
 using namespace kiln;
 using namespace kiln::io;
+using kiln::test::relative;
 
 struct Case {
     Dimension dimension;
@@ -42,6 +44,8 @@ TEST_CASE("every unit has its SI value, to the last bit") {
         {Dimension::volume, "2l", 2e-3},
         {Dimension::time, "90s", 90.0},
         {Dimension::time, "7ms", 7e-3},
+        {Dimension::time, "7us", 7e-6},
+        {Dimension::time, "1d", 86400.0},
         {Dimension::time, "2min", 120.0},
         {Dimension::time, "1.5h", 5400.0},
         {Dimension::temperature, "1473K", 1473.0},
@@ -50,6 +54,9 @@ TEST_CASE("every unit has its SI value, to the last bit") {
         {Dimension::heating_rate, "2K/s", 2.0},
         {Dimension::heating_rate, "3K/min", 0.05},
         {Dimension::heating_rate, "36K/h", 0.01},
+        {Dimension::heating_rate, "2C/s", 2.0},
+        {Dimension::heating_rate, "3C/min", 0.05},
+        {Dimension::heating_rate, "36C/h", 0.01},
         {Dimension::pressure, "1e5Pa", 1e5},
         {Dimension::pressure, "3kPa", 3e3},
         {Dimension::pressure, "150MPa", 150e6},
@@ -99,6 +106,24 @@ TEST_CASE("every unit has its SI value, to the last bit") {
     }
 }
 
+TEST_CASE("units as keyboards and instruments write them: degree signs, both micro signs, superscripts; RT") {
+    for (const char* text : {"25C", "25°C", "25 °C", "25 ° C", "25\u2103", "25\u00baC", "25degC", "25 deg C", "RT", " RT "}) {
+        CAPTURE(text);
+        CHECK(parse_quantity(text, Dimension::temperature) == 298.15);
+    }
+    for (const char* text : {"6C/min", "6°C/min", "6 \u2103/min", "6degC/min", "6K/min", "360C/h", "360°C/h", "0.1°C/s"}) {
+        CAPTURE(text);
+        CHECK(parse_quantity(text, Dimension::heating_rate) == relative(0.1, 1e-15));
+    }
+    for (const char* text : {"0.35um", "0.35\u00b5m", "0.35 \u03bcm"}) CHECK(parse_quantity(text, Dimension::length) == 0.35e-6);
+    CHECK(parse_quantity("45°", Dimension::angle) == parse_quantity("45deg", Dimension::angle));
+    CHECK(parse_quantity("3.95g/cm\u00b3", Dimension::mass_density) == 3950.0);
+    CHECK(parse_quantity("1.1 J/m^2", Dimension::surface_energy) == 1.1);
+    for (const char* text : {"25°F", "25°", "25", "rt", "25RT", "25c"}) CHECK(refusal(text, Dimension::temperature) != "");
+    CHECK(refusal("25°", Dimension::temperature) == "'25°' has no unit of the right kind; known here: K, C");
+    CHECK(refusal("RT", Dimension::time) != "");
+}
+
 TEST_CASE("blanks may stand around a quantity and before its unit") {
     for (const char* text : {"50 nm", "  50nm", "50nm   ", " 50  nm "}) CHECK(parse_quantity(text, Dimension::length) == 5e-8);
     CHECK(parse_quantity(" 3 ", Dimension::none) == 3.0);
@@ -117,7 +142,7 @@ TEST_CASE("a unit of another kind or another case is refused") {
     CHECK(refusal("50NM", Dimension::length) == "'50NM'" + wrong + "m, cm, mm, um, nm");
     CHECK(refusal("300k", Dimension::temperature) == "'300k'" + wrong + "K, C");
     CHECK(refusal("300c", Dimension::temperature) == "'300c'" + wrong + "K, C");
-    CHECK(refusal("1H", Dimension::time) == "'1H'" + wrong + "s, ms, min, h");
+    CHECK(refusal("1H", Dimension::time) == "'1H'" + wrong + "s, ms, us, min, h, d");
     CHECK(refusal("5nmx", Dimension::length) == "'5nmx'" + wrong + "m, cm, mm, um, nm");
     CHECK(refusal("5nm 6nm", Dimension::length) == "'5nm 6nm'" + wrong + "m, cm, mm, um, nm");
     CHECK(refusal("0x10m", Dimension::length) == "'0x10m'" + wrong + "m, cm, mm, um, nm");

@@ -62,10 +62,11 @@ void Options::add_programme(CLI::App& app) {
     add_quantities(app, "--at-time", times, Dimension::time, "Times at which a state is written, on the clock of the state");
     add_quantity(app, "--every", every, Dimension::time,
                  "Also write a state after each such interval from the state's time on, until the last density or time");
-    auto* hold = add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of a hold without end");
+    auto* hold =
+        add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of a hold without end; RT is 25 C");
     app.add_option(
            "--schedule", schedule,
-           "Temperatures, heating rates and hold times, such as \"25C 10K/min 1200C 1h 10K/min 25C\", from the state's time on")
+           "Temperatures, heating rates and hold times, such as \"RT 10C/min 1200C 1h 10C/min RT\", from the state's time on")
         ->type_name("WORDS")
         ->excludes(hold);
     add_choice(app, "--report", report, {{"viscosity", Report::viscosity}},
