@@ -29,4 +29,18 @@ std::optional<Spread> spread_of(std::span<const double> values) {
     return Spread{mean, std::sqrt(squares / count), least, most};
 }
 
+double quantile_of(std::span<const double> values, std::span<const double> weights, double fraction) {
+    constexpr double rounding = 1e-12;  // of a sum
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t row) { return values[row]; });
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    double passed = 0.0;
+    for (const std::size_t row : order) {
+        passed += weights[row];
+        if (passed >= fraction * total * (1.0 - rounding)) return values[row];
+    }
+    return values[order.back()];
+}
+
 }  // namespace kiln::analysis

@@ -24,4 +24,8 @@ struct Spread {
 /// Nothing without values.
 std::optional<Spread> spread_of(std::span<const double> values);
 
+/// The smallest of the values up to which their weights, added in ascending order of the values, make up a fraction of all weights.
+/// There is at least one value, with a positive weight.
+double quantile_of(std::span<const double> values, std::span<const double> weights, double fraction);
+
 }  // namespace kiln::analysis

@@ -1,7 +1,10 @@
 // material_io.cpp: keys of materials and their ranges.
 #include "io/material_io.h"
 
+#include <fstream>
+
 #include "io/json_values.h"
+#include "physics/materials.h"
 
 namespace kiln::io {
 
@@ -25,6 +28,7 @@ constexpr Field fields[] = {
 };
 
 constexpr const char* diffusion_key = "grain_boundary_diffusion";
+constexpr const char* assumed_key = "assumed";
 
 }  // namespace
 
@@ -54,6 +58,25 @@ Material material_from(const Json& json, const std::string& place) {
     }
     material.other = text_of(other);
     return material;
+}
+
+Material assumed_material() {
+    Material material = physics::builtin_material("alumina");
+    material.other = text_of(Json{{assumed_key, true}});
+    return material;
+}
+
+bool is_assumed(const Material& material) {
+    return carried_json(material.other, "the unknown keys of material '" + material.name + "'").value(assumed_key, Json()) == true;
+}
+
+Material material_named(const std::string& name) {
+    if (!name.ends_with(".json")) return physics::builtin_material(name);
+    std::ifstream file(name);
+    if (!file) throw Error(name + ": the material cannot be read");
+    const Json json = Json::parse(file, nullptr, false);
+    if (json.is_discarded()) throw Error(name + ": is not JSON");
+    return material_from(json, name);
 }
 
 Json material_json(const Material& material) {

@@ -15,6 +15,13 @@ Json material_json(const Material& material);
 /// Material from JSON; place is for the message of the Error thrown for a value that is no finite number or out of its range.
 Material material_from(const Json& json, const std::string& place);
 
+/// The material of a state that names none: alumina, with the key "assumed", which says so to whoever reads it after.
+Material assumed_material();
+bool is_assumed(const Material& material);
+
+/// A built-in material by its name, or that of a file NAME.json. Throws Error for a name that is neither, or what the file holds.
+Material material_named(const std::string& name);
+
 /// The same for a pair of materials under "contacts".
 Json material_pair_json(const MaterialPair& pair, const std::vector<Material>& materials);
 MaterialPair material_pair_from(const Json& json, const std::vector<Material>& materials, const std::string& place);

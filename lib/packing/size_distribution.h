@@ -1,11 +1,13 @@
-// size_distribution.h: particle size distributions by number: monosize, lognormal, bimodal, a list from a file.
+// size_distribution.h: particle size distributions: monosize, lognormal, bimodal, percentiles, lists and measured tables.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "packing/random.h"
+#include "packing/size_classes.h"
 
 namespace kiln::packing {
 
@@ -14,7 +16,7 @@ struct Monosize {
 };
 
 struct Lognormal {
-    double median;             // m
+    double median;             // m, by number
     double deviation;          // geometric standard deviation, >= 1
     double smallest, largest;  // m, diameters beyond these are drawn again
 };
@@ -25,16 +27,21 @@ struct Bimodal {
 };
 
 struct DiameterList {
-    std::vector<double> diameters;  // m, taken in turn
+    std::vector<double> diameters;  // m
 };
 
-using SizeDistribution = std::variant<Monosize, Lognormal, Bimodal, DiameterList>;
+using SizeDistribution = std::variant<Monosize, Lognormal, Bimodal, DiameterList, SizeClasses>;
 
-/// What a text such as "lognormal:100nm:1.4:50nm:200nm" says. diameter: m, for "monosize".
+/// What a text such as "lognormal:100nm:1.4:50nm:200nm" says, of number or volume; file:NAME is read by read_sizes(). diameter: m,
+/// for "monosize". weighting: where none is given, number, but volume for percentiles.
 /// Throws TextError for a text that is none of the known ones, Error for a file that cannot be read.
-SizeDistribution parse_distribution(const std::string& text, double diameter);
+SizeDistribution parse_distribution(const std::string& text, double diameter, std::optional<Weighting> weighting = {});
 
-/// Radii (m) of the given number of particles.
+/// Radii (m) of the given number of particles. A list gives each of its diameters as often as it can, and what then is left to draw
+/// at random, none twice.
 std::vector<double> draw_radii(const SizeDistribution& distribution, std::size_t particles, Random& random);
+
+/// The diameter (m) below which a fraction of a distribution lies, by number or by volume.
+double size_quantile(const SizeDistribution& distribution, double fraction, Weighting weighting);
 
 }  // namespace kiln::packing

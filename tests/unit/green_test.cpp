@@ -101,7 +101,7 @@ TEST_CASE("green: bimodal fractions are fractions of the number, exact to one pa
     CHECK(drawn_as(50e-9) == 751);
 }
 
-TEST_CASE("green: a list of diameters is taken in turn, and sets the number of particles") {
+TEST_CASE("green: a list of diameters gives each as often as it can, and sets the number of particles") {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "kiln_green_test_diameters";
     std::ofstream(file) << "100nm\n\n0.2um\n50\n";
     const std::string text = "file:" + file.string();
@@ -110,7 +110,7 @@ TEST_CASE("green: a list of diameters is taken in turn, and sets the number of p
     const std::vector<double> drawn = diameters(text, 3);
     CHECK(close(drawn[0], 100e-9, 1e-14));
     CHECK(close(drawn[1], 200e-9, 1e-14));
-    CHECK(close(drawn[2], 100e-9, 1e-14));
+    CHECK((close(drawn[2], 100e-9, 1e-14) || close(drawn[2], 200e-9, 1e-14)));
     CHECK(std::get<DiameterList>(parse_distribution(text, 0.0)).diameters.size() == 2);
     std::filesystem::remove(file);
     CHECK_THROWS_WITH_AS(diameters(text, 3), doctest::Contains("cannot be read"), Error);

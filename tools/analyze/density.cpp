@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "tools/common/quantity_options.h"
+#include "tools/common/sizes.h"
 #include "tools/common/value_options.h"
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
@@ -22,7 +23,8 @@ constexpr const char* density_footer =
     "  measure                   volume that the density refers to, see below\n"
     "  coordination_number       contacts per particle: overlaps, or bonds where there are some\n"
     "  mean_overlap_ratio        h/2R, or h/(r1 + r2) of unequal spheres; 0 for bonds of shrunk particles\n"
-    "  overlap_ratio, diameter   {mean, standard_deviation, minimum, maximum}, diameter in m\n"
+    "  overlap_ratio, diameter   {mean, standard_deviation, minimum, maximum}, diameter in m and with\n"
+    "                            {by_number, by_volume} {d10, d50, d90}\n"
     "  clusters                  groups that contacts connect, single particles included\n"
     "  largest_cluster_fraction  of the particles\n"
     "  isolated                  particles without a contact\n"
@@ -125,6 +127,7 @@ Json density_of(const State& state, const DensityOptions& options) {
     std::vector<double> diameters;
     for (const double radius : state.particles.radius) diameters.push_back(2.0 * radius);
     result["diameter"] = spread_json(analysis::spread_of(diameters));
+    if (!diameters.empty()) result["diameter"].update(cli::percentiles_json(diameters));
     if (options.bins > 0) result["diameter_histogram"] = histogram_json(analysis::histogram_of(diameters, options.bins, 0.0));
     if (options.correlation && state.particles.size() > 0) {
         const double range = options.range > 0.0 ? options.range : 4.0 * analysis::mean_diameter(state.particles);

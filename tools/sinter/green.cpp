@@ -4,32 +4,26 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <cstdio>
+#include <iostream>
 
+#include "analysis/histogram.h"
 #include "tools/common/progress.h"
+#include "tools/common/sizes.h"
 #include "core/contacts.h"
 #include "io/files.h"
 #include "io/state_io.h"
-#include "physics/materials.h"
 #include "tools/sinter/green_options.h"
 #include "io/material_io.h"
 
 namespace kiln::sinter {
 
-using packing::Method, packing::PackingOptions, packing::Relaxation, packing::RelaxationOptions;
+using packing::Method, packing::PackingOptions, packing::Relaxation, packing::RelaxationOptions, packing::Weighting;
 
 namespace {
 
 constexpr int steps_between_details = 10;
-
-Material material_named(const std::string& name) {
-    if (!name.ends_with(".json")) return physics::builtin_material(name);
-    std::ifstream file(name);
-    if (!file) throw Error(name + ": the material cannot be read");
-    const Json json = Json::parse(file, nullptr, false);
-    if (json.is_discarded()) throw Error(name + ": is not JSON");
-    return io::material_from(json, name);
-}
+constexpr double worth_warning = 0.1;  // relative deviation of the median by volume from the one asked for
 
 /// Shows how far a relaxation has come: overlaps fall roughly exponentially.
 void show(cli::Progress& progress, const Relaxation& relaxation) {
@@ -55,6 +49,54 @@ std::string name_of(Method method) {
     throw std::logic_error("method without a name");
 }
 
+std::vector<double> diameters_of(const State& state) {
+    std::vector<double> diameters;
+    for (const double radius : state.particles.radius) diameters.push_back(2.0 * radius);
+    return diameters;
+}
+
+/// The sizes that were asked for beside those that the particles have.
+Json sizes_of(const packing::SizeDistribution& distribution, const State& state) {
+    const std::vector<double> diameters = diameters_of(state);
+    Json made = cli::percentiles_json(diameters);
+    const analysis::Spread spread = *analysis::spread_of(diameters);
+    made["mean"] = spread.mean;
+    made["minimum"] = spread.minimum;
+    made["maximum"] = spread.maximum;
+    const Json asked = cli::percentiles_json([&](double fraction, bool by_volume) {
+        return packing::size_quantile(distribution, fraction, by_volume ? Weighting::volume : Weighting::number);
+    });
+    return {{"asked", asked}, {"made", made}};
+}
+
+/// Three digits and a prefix: 104 nm.
+std::string length_text(double length) {
+    const auto [factor, unit] = length < 1e-6 ? std::pair(1e9, "nm") : length < 1e-3 ? std::pair(1e6, "um") : std::pair(1e3, "mm");
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g %s", factor * length, unit);
+    return text;
+}
+
+/// "diameters by volume: D10 102 nm (asked for 100 nm), …".
+std::string sizes_text(const Json& sizes, const char* by, const std::string& name) {
+    std::string text = "diameters by " + name + ": ";
+    for (const char* key : {"d10", "d50", "d90"})
+        text += std::string(key == std::string("d10") ? "D" : ", D") + (key + 1) + " " +
+                length_text(sizes["made"][by][key].get<double>()) + " (asked for " +
+                length_text(sizes["asked"][by][key].get<double>()) + ")";
+    return text;
+}
+
+/// Says what sizes came out; warns where the particles are too few to show the distribution.
+void report_sizes(const Json& sizes) {
+    for (const auto& [by, name] : {std::pair("by_number", "number"), std::pair("by_volume", "volume")})
+        std::cerr << "sinter green: " << sizes_text(sizes, by, name) << "\n";
+    const double asked = sizes["asked"]["by_volume"]["d50"].get<double>(), made = sizes["made"]["by_volume"]["d50"].get<double>();
+    if (std::abs(made - asked) > worth_warning * asked)
+        cli::warn("sinter green", "half of the volume lies below " + length_text(made) + ", not below the " + length_text(asked) +
+                                      " of the distribution: large particles are so rare that more are needed to show it (-n)");
+}
+
 Json summary_of(const PackingOptions& options, const State& state) {
     const std::vector<Pair> pairs = find_pairs(state.box, state.particles.position, state.particles.radius);
     const ContactStatistics contacts = contact_statistics(state.box, state.particles, pairs);
@@ -62,7 +104,8 @@ Json summary_of(const PackingOptions& options, const State& state) {
             {"seed", options.seed},
             {"coordination_number", contacts.coordination_number},
             {"mean_overlap_ratio", contacts.mean_overlap_ratio},
-            {"relative_density", relative_density(state)}};
+            {"relative_density", relative_density(state)},
+            {"diameters", sizes_of(options.distribution, state)}};
 }
 
 }  // namespace
@@ -73,7 +116,7 @@ int green(int argc, char** argv) {
     options.add_to(app);
     cli::parse(app, argc, argv, options.common);
     options.complete(app);
-    const Material material = material_named(options.material);
+    const Material material = io::material_named(options.material);
     io::Output output(options.common.output, options.common.text);
 
     cli::Progress progress("sinter green", options.common);
@@ -81,7 +124,9 @@ int green(int argc, char** argv) {
         packing::pack(options.packing, cli::stop_requested, [&](const Relaxation& relaxation) { show(progress, relaxation); });
     progress.clear();
     state.materials = {material};
-    io::append_history(state, cli::history_entry("sinter green", app, summary_of(options.packing, state)));
+    const Json summary = summary_of(options.packing, state);
+    if (options.distribution != "monosize" && !options.common.quiet) report_sizes(summary["diameters"]);
+    io::append_history(state, cli::history_entry("sinter green", app, summary));
     output.write(std::move(state));
     output.commit();
     return cli::done;

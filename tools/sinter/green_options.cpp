@@ -10,7 +10,7 @@
 
 namespace kiln::sinter {
 
-using packing::DiameterList, packing::Method;
+using packing::DiameterList, packing::Method, packing::Weighting;
 
 namespace {
 
@@ -52,13 +52,7 @@ void GreenOptions::add_to(CLI::App& app) {
     cli::add_number(app, "-n,--particles", packing.particles, {1, std::numeric_limits<std::int32_t>::max()},
                     "Number of particles; with file:LIST as many as it has lines");
     add_quantity(app, "--diameter", diameter, Dimension::length, "Diameter of monosize particles", "100nm");
-    app.add_option(
-           "--distribution", distribution,
-           "Diameters by number. monosize: all alike; lognormal:MEDIAN:DEVIATION[:MIN:MAX] with the geometric standard deviation, "
-           "as in lognormal:100nm:1.4:50nm:200nm; bimodal:D1:D2:FRACTION with the number fraction of D1; file:LIST, one diameter "
-           "with its unit a line, taken in turn")
-        ->capture_default_str()
-        ->type_name("SIZES");
+    add_sizes(app);
     cli::add_number(app, "--density", packing.density, {}, "Relative density: volume of the spheres over that of the box");
     cli::add_choice(app, "--method", packing.method,
                     {{"loose", Method::loose}, {"affine", Method::affine}, {"soft", Method::soft}},
@@ -88,6 +82,21 @@ void GreenOptions::add_to(CLI::App& app) {
     common.add_to(app, false);
 }
 
+void GreenOptions::add_sizes(CLI::App& app) {
+    app.add_option(
+           "--distribution", distribution,
+           "Diameters. monosize: all alike; lognormal:MEDIAN:DEVIATION[:MIN:MAX] with the geometric standard deviation, as in "
+           "lognormal:100nm:1.4:50nm:200nm; bimodal:D1:D2:FRACTION with the fraction of D1; percentiles:D10:D50:D90[:MIN:MAX], "
+           "lognormal on either side of D50; file:LIST, one diameter with its unit a line, drawn at random")
+        ->capture_default_str()
+        ->type_name("SIZES");
+    cli::add_choice(app, "--sizes-by", sizes_by,
+                    {{"number", Weighting::number}, {"volume", Weighting::volume}, {"mass", Weighting::volume}},
+                    "What the distribution counts: the number of particles, or their volume or mass; particles are drawn so that "
+                    "their number follows from it")
+        ->default_str("number; volume of percentiles");
+}
+
 void GreenOptions::complete(const CLI::App& app) {
     const bool soft = packing.method == Method::soft;
     if (packing.compact_to && app.count("--method") == 0) packing.method = Method::affine;
@@ -102,7 +111,11 @@ void GreenOptions::complete(const CLI::App& app) {
         refuse(soft ? "--swell does not go with --method soft" : "--mean-overlap goes with --method soft only");
     if (!(diameter > 0.0)) refuse("--diameter: the diameter is not above zero");
     if (distribution != "monosize" && app.count("--diameter") > 0) refuse("--diameter goes with --distribution monosize only");
-    packing.distribution = cli::parsed("--distribution", [this] { return packing::parse_distribution(distribution, diameter); });
+    if (distribution == "monosize" && sizes_by) refuse("--sizes-by: all sizes of --distribution monosize are one");
+    packing.distribution =
+        cli::parsed("--distribution", [this] { return packing::parse_distribution(distribution, diameter, sizes_by); });
+    if (sizes_by && std::holds_alternative<DiameterList>(packing.distribution))
+        refuse("--sizes-by: a list of diameters has one of each particle");
     if (const auto* list = std::get_if<DiameterList>(&packing.distribution); list && app.count("--particles") == 0)
         packing.particles = static_cast<std::int64_t>(list->diameters.size());
     if (packing.particles < 1 || packing.particles > std::numeric_limits<std::int32_t>::max())
