@@ -100,7 +100,7 @@ Bonds shrink(State& state, const std::vector<Pair>& pairs, const std::vector<Ove
     summary.stopped = shrunk.stopped;
     const long double before = solid_volume(particles.radius, {});
     const long double after = solid_volume(shrunk.radius, shrunk.volume);
-    summary.volume_error = static_cast<double>(after / before - 1.0L);
+    if (before > 0.0L) summary.volume_error = static_cast<double>(after / before - 1.0L);
 
     Bonds bonds = make_bonds(pairs, overlaps, shrunk, options, summary);
     particles.radius = std::move(shrunk.radius);
@@ -145,7 +145,8 @@ Summary bondify(State& state, const Options& options, const Watch& watch) {
     summary.bonds = bonds.size();
     summary.mean_diameter = 2.0 * mean(bonds.radius);
     summary.mean_length = mean(bonds.length);
-    summary.coordination_number = 2.0 * static_cast<double>(bonds.size()) / static_cast<double>(particles.size());
+    if (particles.size() > 0)
+        summary.coordination_number = 2.0 * static_cast<double>(bonds.size()) / static_cast<double>(particles.size());
     state.bonds = std::move(bonds);
     return summary;
 }

@@ -12,7 +12,6 @@
 #include "io/column.h"
 #include "io/json_values.h"
 #include "io/material_io.h"
-#include "physics/materials.h"
 
 namespace kiln::io {
 
@@ -175,7 +174,7 @@ std::vector<Material> materials_from(const Json& header, const std::string& plac
             throw Error(place + ": material '" + clipped(material.name) + "' stands twice");
         materials.push_back(std::move(material));
     }
-    if (materials.empty()) materials.push_back(physics::builtin_material("alumina"));
+    if (materials.empty()) materials.push_back(assumed_material());
     return materials;
 }
 

@@ -22,7 +22,8 @@ constexpr double coincident = 1e-9;   // of the radii, distance of centres that 
 SinteringBody::SinteringBody(State state, Faces faces) : state_(std::move(state)) {
     Particles& particles = state_.particles;
     if (particles.size() == 0) throw Error("the state has no particles");
-    if (state_.bonds) throw Error("the state has bonds; sintering takes a packing without them");
+    if (state_.bonds && state_.bonds->size() > 0) throw Error("the state has bonds; sintering takes a packing without them");
+    state_.bonds.reset();
     for (Vec3& position : particles.position) position = state_.box.wrap(position);
     if (faces != Faces::as_given) state_.box.periodic.fill(faces == Faces::periodic);
     max_radius_ = *std::max_element(particles.radius.begin(), particles.radius.end());

@@ -11,7 +11,7 @@
 #include "tools/analyze/report.h"
 #include "tools/analyze/voxel_options.h"
 #include "tools/common/bond_model.h"
-#include "tools/common/each_state.h"
+#include "tools/common/material_option.h"
 #include "tools/common/quantity_options.h"
 #include "tools/common/value_options.h"
 
@@ -156,9 +156,14 @@ int elastic(int argc, char** argv) {
     cli::add_quantity(app, "--young-modulus", young, io::Dimension::pressure, "With --image: Young's modulus of the solid");
     cli::add_number(app, "--poisson-ratio", poisson, {-0.999, 0.499}, "With --image: Poisson's ratio of the solid")
         ->default_str("");
+    cli::MaterialOption material;
+    material.add_to(app);
     common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);
     options.check(app, {"--bond-law", "--bond-shear"}, {"--young-modulus", "--poisson-ratio"}, common);
+    if (!options.image.empty() && app.count("--material") > 0)
+        throw CLI::ValidationError("--material",
+                                   "has no meaning with --image, whose solid has --young-modulus and --poisson-ratio");
     if (!options.image.empty() && !(young > 0.0)) throw CLI::ValidationError("--young-modulus", "is not greater than 0");
 
     Report report(common, table, options.model == Model::voxel ? elastic_voxel_columns : elastic_network_columns);
@@ -174,7 +179,10 @@ int elastic(int argc, char** argv) {
         add(of_voxels({found}, found.union_fraction, voxel::Order::first));
     } else {
         io::Input input(common.files, cli::stop_requested);
-        cli::for_each_state(input, [&](const State& state, const std::string&) {
+        material.warn_by([&](const std::string& sentence) {
+            if (!common.quiet) cli::warn("analyze elastic", sentence);
+        });
+        cli::for_each_state(input, material, [&](const State& state, const std::string&) {
             if (options.model == Model::network) {
                 add(of_network(state, model, options.tolerance));
                 return true;

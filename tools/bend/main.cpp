@@ -9,7 +9,7 @@
 #include "io/files.h"
 #include "io/state_io.h"
 #include "tools/bend/options.h"
-#include "tools/common/each_state.h"
+#include "tools/common/material_option.h"
 #include "tools/common/progress.h"
 #include "tools/common/tool.h"
 
@@ -27,6 +27,8 @@ int run(int argc, char** argv) {
     bend::Options options;
     CLI::App app{"", "bend"};
     options.add_to(app);
+    cli::MaterialOption material;
+    material.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
     if (common.text && options.states.empty())
@@ -42,7 +44,10 @@ int run(int argc, char** argv) {
     const auto test = options.to_failure()                        ? bending::bend_to_failure
                       : options.method == bending::Method::motion ? bending::bend_dynamic
                                                                   : bending::bend_static;
-    cli::for_each_state(input, [&](State state, const std::string& place) {
+    material.warn_by([&](const std::string& sentence) {
+        if (!common.quiet) cli::warn("bend", sentence);
+    });
+    cli::for_each_state(input, material, [&](State state, const std::string& place) {
         Json history = io::history_of(state);
         const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, place); }};
         const bending::Result result = test(std::move(state), options, watch);

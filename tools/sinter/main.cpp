@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "io/checkpoint.h"
+#include "tools/common/material_option.h"
 #include "tools/common/tool.h"
 #include "green.h"
 #include "run.h"
@@ -17,6 +18,8 @@ int sinter_states(int argc, char** argv) {
     cli::Common common;
     sinter::Options options;
     options.add_to(app);
+    cli::MaterialOption material;
+    material.add_to(app);
     common.add_to(app);
     cli::parse(app, argc, argv, common);
     options.check(app, common.output);
@@ -41,7 +44,9 @@ int sinter_states(int argc, char** argv) {
         progress.clear();
         if (!common.quiet) cli::warn("sinter", sentence);
     };
-    return sinter::run(input, options, {states, history ? &*history : nullptr, progress, entry, warn, checkpoint}, earlier);
+    material.warn_by(warn);
+    return sinter::run(input, material, options, {states, history ? &*history : nullptr, progress, entry, warn, checkpoint},
+                       earlier);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "tools/common/each_state.h"
+#include "tools/common/material_option.h"
 #include "tools/common/tool.h"
 #include "sintering/explicit_sintering.h"
 #include "sintering/implicit_sintering.h"
@@ -196,12 +196,13 @@ class Sintered {
 
 }  // namespace
 
-int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<io::Checkpoint>& earlier) {
+int run(io::Input& input, const cli::MaterialOption& material, const Options& options, const Sinks& sinks,
+        const std::optional<io::Checkpoint>& earlier) {
     bool converged = !earlier || earlier->run.converged;
     std::size_t document = 0;
     std::unique_ptr<Sintered> last;
     bool interrupted = false;
-    cli::for_each_state(input, [&](State state, const std::string& place) {
+    cli::for_each_state(input, material, [&](State state, const std::string& place) {
         const std::size_t number = document++;
         if (earlier && number < earlier->run.document) return true;
         const bool taken_up = earlier && number == earlier->run.document;

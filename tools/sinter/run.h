@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "tools/common/material_option.h"
 #include "tools/common/progress.h"
 #include "io/checkpoint.h"
 #include "io/files.h"
@@ -26,7 +27,8 @@ struct Sinks {
 /// the order in which they are reached. Gives the exit status: 3 if a step did not converge or the schedule ended short of a
 /// required density. A requested stop ends the run after its step: with the last state written, or in a checkpoint if there is
 /// one. Throws Error for a required density or time that lies behind the state.
-int run(io::Input& input, const Options& options, const Sinks& sinks, const std::optional<io::Checkpoint>& earlier);
+int run(io::Input& input, const cli::MaterialOption& material, const Options& options, const Sinks& sinks,
+        const std::optional<io::Checkpoint>& earlier);
 
 /// The end of a run whose checkpoint says that only the renaming of its outputs was left.
 int finish(const std::string& output, const std::string& history, const io::RunState& run_state,

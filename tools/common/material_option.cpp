@@ -1,0 +1,59 @@
+// material_option.cpp: materials of the command line in a document, and the warning where none is named.
+#include "tools/common/material_option.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+#include "io/material_io.h"
+#include "io/state_io.h"
+#include "tools/common/each_state.h"
+
+namespace kiln::cli {
+
+void MaterialOption::add_to(CLI::App& app) {
+    app.add_option_function<std::string>(
+           "--material",
+           [this](const std::string& list) {
+               materials_.clear();
+               std::istringstream names(list);
+               for (std::string name; std::getline(names, name, ',');) materials_.push_back(io::material_named(name));
+               if (materials_.empty()) materials_.push_back(io::material_named(list));  // nothing, which is no name
+           },
+           "Materials in place of those of the state, in their order: built-in ones, or files NAME.json; a state that names none "
+           "is "
+           "taken for alumina, with a warning")
+        ->type_name("NAME,...");
+}
+
+State MaterialOption::state_from(io::Document document) const {
+    const std::string place = document.place;
+    Json& header = document.header;
+    const bool named = header.contains("materials") && header["materials"].is_array() && !header["materials"].empty();
+    if (!materials_.empty()) {
+        if (named && header["materials"].size() != materials_.size())
+            throw io::PlacedError(place + ": has " + std::to_string(header["materials"].size()) +
+                                  " materials, and --material names " + std::to_string(materials_.size()));
+        Json materials = Json::array();
+        for (const Material& material : materials_) materials.push_back(io::material_json(material));
+        header["materials"] = std::move(materials);
+    }
+    State state = io::state_from(std::move(document));
+    const bool assumed = std::ranges::any_of(state.materials, io::is_assumed);
+    if (assumed && !warned_ && warn_) {
+        warn_(place + ": names no material, and alumina is assumed; --material NAME or FILE.json says what it is");
+        warned_ = true;
+    }
+    return state;
+}
+
+void for_each_state(io::Input& input, const MaterialOption& material,
+                    const std::function<bool(State, const std::string& place)>& work) {
+    while (auto document = input.next()) {
+        const std::string place = document->place;
+        State state = material.state_from(std::move(*document));
+        if (!at_place(place, [&] { return work(std::move(state), place); })) return;
+    }
+}
+
+}  // namespace kiln::cli

@@ -1,0 +1,39 @@
+// material_option.h: --material of programs that need constants of the solid: what a state consists of that does not say so itself.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/files.h"
+
+namespace CLI {
+class App;
+}
+
+namespace kiln::cli {
+
+/// A state that names no material is read as alumina, and carries a mark, "assumed", through all programs. Those that need
+/// constants say so once, unless --material says what it is.
+class MaterialOption {
+   public:
+    void add_to(CLI::App& app);
+
+    /// Who is told that a material is assumed; nobody by default.
+    void warn_by(std::function<void(const std::string& sentence)> warn) { warn_ = std::move(warn); }
+
+    /// The state of a document: with the materials of --material in place of its own, in the same order, where there are any.
+    /// Throws PlacedError as io::state_from() does, and where their number is another.
+    State state_from(io::Document document) const;
+
+   private:
+    std::vector<Material> materials_;
+    std::function<void(const std::string&)> warn_;
+    mutable bool warned_ = false;
+};
+
+/// for_each_state() for a program with --material.
+void for_each_state(io::Input& input, const MaterialOption& material,
+                    const std::function<bool(State, const std::string& place)>& work);
+
+}  // namespace kiln::cli
