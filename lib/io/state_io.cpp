@@ -124,6 +124,27 @@ Particles particles_from(std::vector<NamedArray> arrays, std::size_t materials, 
     return particles;
 }
 
+/// A bond's two ends in the order that does not depend on how it is written: i to j across a face is j to i across the other.
+std::array<int, 5> ends_of(const Bonds& bonds, std::size_t row) {
+    const auto [i, j] = bonds.pair[row];
+    const Image& image = bonds.image[row];
+    const std::array<int, 5> forward{i, j, image[0], image[1], image[2]}, backward{j, i, -image[0], -image[1], -image[2]};
+    return std::min(forward, backward);
+}
+
+/// A bond that stands twice would carry twice.
+void check_twice(const Bonds& bonds, const std::string& place) {
+    std::vector<std::pair<std::array<int, 5>, std::size_t>> ends(bonds.size());
+    for (std::size_t row = 0; row < ends.size(); ++row) ends[row] = {ends_of(bonds, row), row};
+    if (!std::ranges::is_sorted(ends)) std::ranges::sort(ends);
+    const auto found = std::ranges::adjacent_find(ends, {}, [](const auto& each) { return each.first; });
+    if (found == ends.end()) return;
+    const std::size_t first = found->second, again = std::next(found)->second;
+    throw Error(place + ": bonds " + std::to_string(first) + " and " + std::to_string(again) +
+                " are one: both join particle rows " + std::to_string(bonds.pair[first][0]) + " and " +
+                std::to_string(bonds.pair[first][1]) + " with the same image");
+}
+
 Bonds bonds_from(std::vector<NamedArray> arrays, std::size_t particles, const std::string& place) {
     Bonds bonds;
     const std::string where = place + ": bonds.";
@@ -153,6 +174,7 @@ Bonds bonds_from(std::vector<NamedArray> arrays, std::size_t particles, const st
         if (default_volume)
             bonds.volume.push_back(std::numbers::pi * bonds.radius[row] * bonds.radius[row] * std::max(0.0, bonds.length[row]));
     }
+    check_twice(bonds, place);
     check_rows(arrays, where, count, "bonds");
     bonds.other = std::move(arrays);
     return bonds;

@@ -23,7 +23,8 @@ for count, bonds in ((1, 0), (50, 80)):
         "box": {"origin": [0, 0, 0], "vectors": [[1e-6, 0, 0], [0, 1e-6, 0], [0, 0, 1e-6]], "periodic": [True, False, True]},
         "particles": {"position": random.random((count, 3)) * 1e-6, "radius": 1e-9 + random.random(count) * 1e-8,
                       "flag": random.integers(0, 255, count, numpy.uint8), "tensor": random.random((count, 3, 3), numpy.float32)},
-        "bonds": {"pair": random.integers(0, count, (bonds, 2), numpy.int32), "radius": random.random(bonds) * 1e-9,
+        "bonds": {"pair": numpy.array([[k % count, (k + 1 + k // count) % count] for k in range(bonds)], numpy.int32).reshape(-1, 2),
+                  "radius": random.random(bonds) * 1e-9,
                   "length": random.random(bonds) * 1e-9}})
 END
 }
