@@ -5,31 +5,75 @@ import math
 import numpy
 
 ALIGNMENT = 64  # bytes
+TYPES = ("f8", "f4", "i8", "i4", "i2", "i1", "u1")
 
 
 def groups(document):
-    """The two places of a document where arrays live; a result may use the same keys for a number."""
+    """The places of a document where arrays live; a result may use the same keys for a number."""
     return {key: document[key] for key in ("particles", "bonds") if isinstance(document.get(key), dict)}
 
 
+def unrepeated(pairs):
+    """An object of JSON; a key that stands twice is refused."""
+    keys = dict(pairs)
+    if len(keys) < len(pairs):
+        names = [key for key, _ in pairs]
+        raise ValueError(f"key '{next(key for key in names if names.count(key) > 1)}' stands twice")
+    return keys
+
+
+def refuse_constant(name):
+    raise ValueError(f"{name} is no number")
+
+
+def header_of(line):
+    try:
+        header = json.loads(line, object_pairs_hook=unrepeated, parse_constant=refuse_constant)
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise ValueError(f"is no line of JSON ({error})") from None
+    if not isinstance(header, dict):
+        raise ValueError("is not a JSON object")
+    size = header.pop("bytes", 0)
+    if not isinstance(size, int) or isinstance(size, bool) or size < 0:
+        raise ValueError("bytes is not a number of bytes")
+    return header, size
+
+
+def array_of(name, spec, payload):
+    """The array that an object with type, shape, and data or at describes."""
+    if not isinstance(spec, dict) or spec.get("type") not in TYPES or ("data" in spec) == ("at" in spec):
+        raise ValueError(f"{name} is not an array with type, shape, and data or at")
+    dtype, shape = numpy.dtype("<" + spec["type"]), spec.get("shape")
+    if not isinstance(shape, list) or not shape or not all(type(n) is int and 0 <= n < 2**31 for n in shape):
+        raise ValueError(f"{name}: shape is not a list of sizes")
+    count = math.prod(shape)
+    if "at" in spec:
+        at = spec["at"]
+        if type(at) is not int or at < 0 or at + count * dtype.itemsize > len(payload):
+            raise ValueError(f"{name} lies beyond the {len(payload)} bytes behind the header")
+        return numpy.frombuffer(payload, dtype, count, at).reshape(shape)
+    data, kinds = spec["data"], (int, float) if dtype.kind == "f" else (int, )
+    if not isinstance(data, list) or len(data) != count or not all(type(value) in kinds for value in data):
+        raise ValueError(f"{name}: data is not a list of {count} numbers of type {spec['type']}")
+    try:
+        return numpy.array(data, dtype).reshape(shape)
+    except OverflowError:
+        raise ValueError(f"{name}: a number is beyond the type {spec['type']}") from None
+
+
 def read(stream):
-    """The documents of an open binary file or pipe, one after the other, as dictionaries; arrays are numpy arrays."""
+    """The documents of an open binary file or pipe, one after the other, as dictionaries; arrays are numpy arrays. ValueError for
+    what is no such document."""
     for line in iter(stream.readline, b""):
         if not line.strip():
             continue
-        document = json.loads(line)
-        size = document.pop("bytes", 0)
+        document, size = header_of(line)
         payload = bytearray(stream.read(size))
         if len(payload) < size:
             raise ValueError(f"{size} bytes belong behind the header, {len(payload)} are there")
-        for arrays in groups(document).values():
+        for group, arrays in groups(document).items():
             for name, spec in arrays.items():
-                dtype, shape = "<" + spec["type"], spec["shape"]
-                if "data" in spec:
-                    array = numpy.array(spec["data"], dtype)
-                else:
-                    array = numpy.frombuffer(payload, dtype, math.prod(shape), spec["at"])
-                arrays[name] = array.reshape(shape)
+                arrays[name] = array_of(f"{group}.{name}", spec, payload)
         yield document
 
 
