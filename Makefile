@@ -153,7 +153,7 @@ $(BUILD)/man/%.1: $(BUILD)/bin/% docs/help-to-man.sh
 	@mkdir -p $(@D)
 	docs/help-to-man.sh $< > $@
 
-$(BUILD)/man/dem-convert.1: workflows/post/dem-convert workflows/post/dem_convert.py docs/help-to-man.sh
+$(BUILD)/man/dem-convert.1: workflows/post/dem-convert $(wildcard workflows/post/*.py) docs/help-to-man.sh
 	@mkdir -p $(@D)
 	PYTHONDONTWRITEBYTECODE=1 docs/help-to-man.sh $< > $@
 

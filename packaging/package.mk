@@ -9,7 +9,8 @@ VERSION     = $(shell sed -nE 's/.*version = "([^"]+)".*/\1/p' tools/common/tool
 install: all man                ## install programs, manual pages and completion under PREFIX (default /usr/local)
 	install -d $(INSTALLED)/bin $(SHARE)/man/man1 $(SHARE)/man/man5 $(SHARE)/kiln/post $(SHARE)/bash-completion/completions
 	install $(PROGRAMS) $(INSTALLED)/bin
-	install -m 644 workflows/post/dem_state.py workflows/post/dem_convert.py workflows/post/convert_*.py $(SHARE)/kiln/post
+	install -m 644 $(addprefix workflows/post/,dem_state.py dem_convert.py tables.py units.py vtu_file.py) \
+	    workflows/post/convert_*.py $(SHARE)/kiln/post
 	install workflows/post/dem-convert $(SHARE)/kiln/post
 	ln -sf ../share/kiln/post/dem-convert $(INSTALLED)/bin/dem-convert
 	install -m 644 $(BUILD)/man/*.1 $(SHARE)/man/man1

@@ -34,7 +34,12 @@ setup_file() {
     analyze modulus -o moduli.json bent.json
     printf 'deflection (mm),force (N)\n0,0\n0.02,40\n0.03,60\n0.025,50\n0.02,40\n0.015,30\n0.01,20\n' >bar7.csv
     printf 'relative_density,young_modulus (GPa)\n0.70,121\n0.79,180\n0.88,262\n' >measured.csv
-    dem-convert sintered.kiln packing.dump
+    # A dump as LAMMPS writes it, with steps for times and no radii; a list of spheres, two species.
+    dem-convert -q sintered.kiln packing.dump
+    sed -i -e '/^ITEM: TIME$/,+1d' -e '/^ITEM: ATOMS/ s/ radius/ c_radius/' packing.dump
+    printf '1.0 1.0 1.0 0.9\n1.8 1.0 1.0 0.8\n' >tomography.txt
+    printf '2\nLattice="400 0 0 0 400 0 0 0 400" Properties=species:S:1:pos:R:3:radius:R:1\nAl 9 9 9 50\nZr 99 9 9 45\n' >mixed.xyz
+    printf '{"name":"zirconia","density":6050,"young_modulus":2.1e11,"poisson_ratio":0.31}\n' >zirconia.json
 }
 
 @test "no line of a help is wider than 100 columns" {

@@ -1,5 +1,5 @@
 # fuzz.mk: `make fuzz` feeds mutated documents to the reader for FUZZ_SECONDS, under the address and undefined behaviour sanitizers;
-# `make mutate` feeds spoilt streams to the four programs as they are.
+# `make mutate` feeds spoilt streams to the four programs as they are, `make mutate-formats` spoilt files of others to dem-convert.
 FUZZ_SECONDS ?= 60
 # Documents after which the fuzzer ends if the time has not come yet; -1 is none.
 FUZZ_RUNS    ?= -1
@@ -14,7 +14,7 @@ FUZZ_OBJECTS := $(FUZZ_SOURCES:%.cpp=$(BUILD)/fuzz/%.o)
 # No input needs more memory than this, nor longer than this for one document.
 FUZZ_LIMITS  := -rss_limit_mb=1024 -malloc_limit_mb=64 -timeout=10 -max_len=16384
 
-.PHONY: fuzz mutate
+.PHONY: fuzz mutate mutate-formats
 fuzz: $(BUILD)/fuzz/reader      ## feed mutated documents to the reader for FUZZ_SECONDS (60)
 	@mkdir -p $(BUILD)/fuzz/corpus
 	$< $(FUZZ_LIMITS) -max_total_time=$(FUZZ_SECONDS) -runs=$(FUZZ_RUNS) -dict=tests/fuzz/dem-state.dict \
@@ -23,6 +23,11 @@ fuzz: $(BUILD)/fuzz/reader      ## feed mutated documents to the reader for FUZZ
 mutate: all                     ## feed COUNT (10000) spoilt streams to the four programs; 8 ms each
 	@mkdir -p $(BUILD)/mutants
 	BIN=$(abspath $(BUILD))/bin PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/fuzz/mutate.py --count $(COUNT) --keep $(BUILD)/mutants
+
+mutate-formats: all             ## feed COUNT (10000) spoilt files of each foreign format to dem-convert; 2 ms each
+	@mkdir -p $(BUILD)/mutants
+	ANALYZE=$(abspath $(BUILD))/bin/analyze PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/convert/mutate_formats.py --count $(COUNT) \
+	    --keep $(abspath $(BUILD))/mutants
 
 $(BUILD)/fuzz/reader: $(FUZZ_OBJECTS)
 	$(FUZZ_CXX) $(FUZZ_FLAGS) $^ -o $@

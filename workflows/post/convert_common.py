@@ -1,24 +1,45 @@
-"""convert_common.py: what the converters share: errors, files written whole, series of files, states from bare columns."""
+"""convert_common.py: what the converters share: errors and warnings, files read and written whole, numbers, names, boxes, bonds."""
 import contextlib
+import gzip
 import math
 import os
+import re
 import sys
+import zlib
 
 import numpy
 
-LENGTHS = {"si": 1.0, "cgs": 1e-2, "micro": 1e-6, "nano": 1e-9}  # m, the unit of length of a LAMMPS style of units
-TIMES = {"si": 1.0, "cgs": 1.0, "micro": 1e-6, "nano": 1e-9}  # s
+import units
+
 SMALL, LARGE = ("id", "position", "radius", "material"), ("pair", "image", "radius", "length", "volume")
+# float() knows also 1_0, nan and digits of other scripts.
+NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+PACKED = {b"PK\x03\x04": "a zip archive", b"BZh": "packed by bzip2", b"\xfd7zXZ": "packed by xz",
+          b"\x28\xb5\x2f\xfd": "packed by zstd"}
 
 
 class ConvertError(Exception):
     """One sentence for the user: file, place, cause."""
 
 
-def warn(sentence):
-    print(f"dem-convert: warning: {sentence}", file=sys.stderr)
+class Voice:
+    """Where warnings go: once each, to stderr, or nowhere."""
+
+    def __init__(self):
+        self.quiet, self.said = False, []
+
+    def __call__(self, sentence):
+        if sentence in self.said:
+            return
+        self.said.append(sentence)
+        if not self.quiet:
+            print(f"dem-convert: warning: {sentence}", file=sys.stderr)
 
 
+warn = Voice()
+
+
+# ---- files ---------------------------------------------------------------------------------------------------------------------
 @contextlib.contextmanager
 def written(path, mode="w"):
     """An open file that appears under its name only when it is whole; "-" is standard output."""
@@ -36,18 +57,78 @@ def written(path, mode="w"):
 
 
 @contextlib.contextmanager
-def opened(path, mode="r"):
-    if path == "-":
-        yield sys.stdin if mode == "r" else sys.stdin.buffer
-        return
-    with open(path, mode, **({} if "b" in mode else {"encoding": "utf-8"})) as stream:
-        yield stream
+def opened(path):
+    """An open binary file to read, unpacked if gzip packed it; "-" is standard input."""
+    with contextlib.ExitStack() as stack:
+        stream = sys.stdin.buffer if path == "-" else stack.enter_context(open(path, "rb"))
+        begin = stream.peek(6)
+        for magic, what in PACKED.items():
+            if begin.startswith(magic):
+                raise ConvertError(f"{path}: is {what}; unpack it first")
+        if not begin.startswith(b"\x1f\x8b"):
+            yield stream
+            return
+        try:
+            yield stack.enter_context(gzip.open(stream))
+        except (EOFError, zlib.error, gzip.BadGzipFile):
+            raise ConvertError(f"{path}: is packed by gzip, and damaged") from None
+
+
+def lines(path, latin=False):
+    """The lines of a text file with their numbers from 1. UTF-8, or UTF-16 with its mark; with latin also Windows-1252, with a
+    warning."""
+    encoding, errors, row = "utf-8", "strict", 0
+    with opened(path) as stream:
+        for raw in stream:
+            if row == 0 and raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+                try:
+                    yield from enumerate((raw + stream.read()).decode("utf-16").replace("\r\n", "\n").split("\n"), start=1)
+                except UnicodeDecodeError:
+                    raise ConvertError(f"{path}: begins as UTF-16 text and is none") from None
+                return
+            if row == 0 and raw.startswith(b"\xef\xbb\xbf"):
+                raw = raw[3:]  # the byte order mark of spreadsheets
+            if b"\0" in raw:
+                raise ConvertError(f"{path}: is not text (line {row + 1})")
+            for part in raw.rstrip(b"\r\n").split(b"\r"):
+                row += 1
+                try:
+                    text = part.decode(encoding, errors)
+                except UnicodeDecodeError:
+                    if not latin:
+                        raise ConvertError(f"{path}: is not UTF-8 text (line {row})") from None
+                    warn(f"{path}: is not UTF-8 text (line {row}); read as Windows-1252")
+                    encoding, errors = "cp1252", "replace"
+                    text = part.decode(encoding, errors)
+                yield row, text
+
+
+def unpacked(path):
+    """A name without the ending of gzip."""
+    return path[:-3] if path.endswith(".gz") else path
 
 
 def beside(path, suffix):
     """The name of a companion: run.csv and ".bonds" give run.bonds.csv."""
-    stem, kind = os.path.splitext(path)
-    return f"{stem}{suffix}{kind}"
+    plain = unpacked(path)
+    stem, kind = os.path.splitext(plain)
+    return f"{stem}{suffix}{kind}{path[len(plain):]}"
+
+
+def companion_of(path, suffix):
+    """The companion of a file that is read, packed or not; None if there is none."""
+    if path == "-":
+        return None
+    name = beside(path, suffix)
+    return next((each for each in (name, unpacked(name), f"{unpacked(name)}.gz") if os.path.exists(each)), None)
+
+
+def without_companion(path, suffix):
+    """Removes the companion of an older file of that name, which would be read with the new one."""
+    old = companion_of(path, suffix)
+    if old:
+        warn(f"{old} belonged to an older {path} and is removed")
+        os.unlink(old)
 
 
 def series(path, count):
@@ -59,30 +140,57 @@ def series(path, count):
     return [beside(path, f"-{number:04d}") for number in range(1, count + 1)]
 
 
-def number(text, place):
-    try:
-        value = float(text)
-    except ValueError:
-        raise ConvertError(f"{place}: '{text}' is not a number") from None
+# ---- numbers and names ---------------------------------------------------------------------------------------------------------
+def number(text, place, power=0):
+    """A finite number, times a power of ten."""
+    value = units.shifted(text, power) if NUMBER.fullmatch(text) else math.nan
+    if math.isnan(value):
+        raise ConvertError(f"{place}: '{clipped(text)}' is not a number")
     if not math.isfinite(value):
-        raise ConvertError(f"{place}: {text} is not a finite number")
+        raise ConvertError(f"{place}: {clipped(text)} is not a finite number")
     return value
 
 
 def whole(text, place):
-    try:
-        return int(text)
-    except ValueError:
-        raise ConvertError(f"{place}: '{text}' is not a whole number") from None
+    """A whole number that 64 bits hold; 12.0 and 1.2e1 are."""
+    if NUMBER.fullmatch(text):
+        value = int(text) if text.lstrip("+-").isdigit() else float(text)
+        if value == int(value if abs(value) < 2**63 else 0) and abs(value) < 2**63:
+            return int(value)
+    raise ConvertError(f"{place}: '{clipped(text)}' is not a whole number")
 
 
+def clipped(text):
+    """What a file says, short enough for a sentence on one line."""
+    text = "".join(sign if sign.isprintable() else "?" for sign in str(text))
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def word(name):
+    """A name for a format in which blanks part words, and colons or quotes mean something."""
+    return re.sub(r"[\s:\"'=]", "_", name) or "_"
+
+
+def words_for(names, what):
+    """Names as single words; refuses two that would become one, and says what was changed."""
+    short = [word(name) for name in names]
+    for name, each in zip(names, short):
+        if short.count(each) > 1:
+            raise ConvertError(f"the {what} '{clipped(name)}' and another one are both written as {each}; rename one")
+        if name != each:
+            warn(f"the {what} '{clipped(name)}' is written as {each}: the format parts words by blanks and colons")
+    return short
+
+
+# ---- arrays of many columns ----------------------------------------------------------------------------------------------------
 def split_columns(group, known):
     """The other arrays of a group as columns of single numbers: name, or name[0], name[1]…, and their values."""
     columns = {}
     for name, values in group.items():
         if name in known:
             continue
-        flat = numpy.asarray(values).reshape(len(values), -1)
+        values = numpy.asarray(values)
+        flat = values.reshape(len(values), math.prod(values.shape[1:]))
         if flat.shape[1] == 1:
             columns[name] = flat[:, 0]
         else:
@@ -91,31 +199,32 @@ def split_columns(group, known):
 
 
 def joined_columns(columns):
-    """The inverse: name[0], name[1]… become one array with a row for each particle or bond."""
-    arrays, parts = {}, {}
-    for name, values in columns.items():
-        stem, mark, index = name.partition("[")
-        if mark and index.endswith("]") and index[:-1].isdigit():
-            parts.setdefault(stem, {})[int(index[:-1])] = values
-        else:
-            arrays[name] = numpy.asarray(values)
-    for stem, found in parts.items():
-        arrays[stem] = numpy.stack([found[k] for k in sorted(found)], axis=1)
+    """The inverse: name[0], name[1]… become one array with a row for each particle or bond. Other names stay columns."""
+    widths = {}
+    for name in columns:
+        stem, _, index = name.rpartition("[")
+        if stem and index[:-1].isdigit() and index.endswith("]"):
+            widths.setdefault(stem, set()).add(index[:-1])
+    whole_ones = {stem: len(found) for stem, found in widths.items()
+                  if stem not in columns and found == {str(k) for k in range(len(found))}}
+    arrays = {name: numpy.asarray(values) for name, values in columns.items() if name.rpartition("[")[0] not in whole_ones}
+    for stem, width in whole_ones.items():
+        arrays[stem] = numpy.stack([columns[f"{stem}[{k}]"] for k in range(width)], axis=1)
     return arrays
 
 
-def box_of(low, high, periodic):
-    """The box between two corners, m."""
-    return {
-        "origin": [float(x) for x in low],
-        "vectors": numpy.diag(numpy.subtract(high, low)).tolist(),
-        "periodic": [bool(p) for p in periodic]
-    }
+# ---- boxes ---------------------------------------------------------------------------------------------------------------------
+def box_of(low, high, periodic=None):
+    """The box between two corners, m; periodic is None where a file does not say it."""
+    box = {"origin": [float(x) for x in low], "vectors": numpy.diag(numpy.subtract(high, low)).tolist()}
+    if periodic is not None:
+        box["periodic"] = [bool(p) for p in periodic]
+    return box
 
 
 def bounds(box):
     """Lower and upper corner of a state's box, m."""
-    low = numpy.array(box.get("origin", (0.0, 0.0, 0.0)))
+    low = numpy.array(box.get("origin", (0.0, 0.0, 0.0)), float)
     return low, low + numpy.diag(box["vectors"])
 
 
@@ -123,16 +232,14 @@ def periodic_axes(box):
     return [bool(p) for p in box.get("periodic", (True, True, True))]
 
 
-def free_box(position, radius):
+def free_box(position, radius, place):
     """A box that just holds a body without periodic faces."""
+    if not len(radius):
+        raise ConvertError(f"{place}: has neither a box nor particles")
     return box_of((position - radius[:, None]).min(axis=0), (position + radius[:, None]).max(axis=0), (False, ) * 3)
 
 
-def state(box, particles, time=0.0):
-    """A dem-state document of columns; ids are kept, whatever numbers they are."""
-    return {"format": "dem-state", "version": 1, "units": "SI", "time": time, "box": box, "particles": particles}
-
-
+# ---- particles and bonds -------------------------------------------------------------------------------------------------------
 def particle_arrays(document):
     """Particles with the arrays that may be missing from a stream."""
     particles = dict(document["particles"])
@@ -142,13 +249,18 @@ def particle_arrays(document):
     return particles
 
 
+def default_volume(radius, length):
+    """Volume of a bond's cylinder, m3."""
+    return math.pi * radius**2 * length.clip(min=0)
+
+
 def bond_arrays(document):
     """Bonds with the arrays that may be missing from a stream; None for a state without bonds."""
     if "bonds" not in document:
         return None
     bonds = dict(document["bonds"])
     bonds.setdefault("image", numpy.zeros((len(bonds["radius"]), 3), numpy.int8))
-    bonds.setdefault("volume", math.pi * bonds["radius"]**2 * bonds["length"].clip(min=0))
+    bonds.setdefault("volume", default_volume(bonds["radius"], bonds["length"]))
     return bonds
 
 
@@ -157,7 +269,7 @@ def nearest_image(document, pair):
     low, high = bounds(document["box"])
     position = document["particles"]["position"]
     step = (position[pair[:, 1]] - position[pair[:, 0]]) / (high - low)
-    return (-numpy.round(step) * periodic_axes(document["box"])).astype(numpy.int8)
+    return -numpy.round(step).astype(numpy.int64) * periodic_axes(document["box"])
 
 
 def neck_length(document, pair, image, radius):
