@@ -125,12 +125,21 @@ def check_bonds(document, place):
     if len(thin):
         raise ConvertError(f"{place}: bond {shown(thin[0])} has radius {float(bonds['radius'][thin[0]])!r}, expected none below "
                            "zero")
+    if twice := same_bonds(pair, image):
+        raise ConvertError(f"{place}: bonds {twice[0]} and {twice[1]} are one: both join {shown(twice[1])} with the same image")
+
+
+def same_bonds(pair, image):
+    """The rows of two bonds that are one, from i to j or from j to i; None if there are none."""
     forward, backward = numpy.column_stack([pair, image]), numpy.column_stack([pair[:, ::-1], -image])
-    ends = [min(a, b) for a, b in zip(map(tuple, forward.tolist()), map(tuple, backward.tolist()))]
-    first = {}
-    for row, each in enumerate(ends):
-        if first.setdefault(each, row) != row:
-            raise ConvertError(f"{place}: bonds {first[each]} and {row} are one: both join {shown(row)} with the same image")
+    turned, open_ = numpy.zeros(len(pair), bool), numpy.ones(len(pair), bool)
+    for column in range(5):  # the smaller of both ways to write it, in the order of the dictionary
+        turned |= open_ & (backward[:, column] < forward[:, column])
+        open_ &= backward[:, column] == forward[:, column]
+    ends = numpy.where(turned[:, None], backward, forward)
+    order = numpy.lexsort(ends.T[::-1])
+    same = numpy.flatnonzero((ends[order[1:]] == ends[order[:-1]]).all(axis=1))
+    return (int(order[same[0]]), int(order[same[0] + 1])) if len(same) else None
 
 
 def check(document, place):

@@ -14,6 +14,7 @@ import units
 SMALL, LARGE = ("id", "position", "radius", "material"), ("pair", "image", "radius", "length", "volume")
 # float() knows also 1_0, nan and digits of other scripts.
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+SIGNS, DIGITS = set("0123456789+-.eE"), set("0123456789-")
 PACKED = {b"PK\x03\x04": "a zip archive", b"BZh": "packed by bzip2", b"\xfd7zXZ": "packed by xz",
           b"\x28\xb5\x2f\xfd": "packed by zstd"}
 
@@ -160,6 +161,28 @@ def whole(text, place):
     raise ConvertError(f"{place}: '{clipped(text)}' is not a whole number")
 
 
+def numbers(texts, places, power=0):
+    """The numbers of a column, times a power of ten; the place of each text is for messages."""
+    if set().union(*texts) <= SIGNS:  # of which float() makes nothing but what number() does
+        try:
+            values = numpy.array([units.shifted(text, power) for text in texts] if power else list(map(float, texts)), float)
+            if numpy.isfinite(values).all():
+                return values
+        except (ValueError, ArithmeticError):
+            pass
+    return numpy.array([number(text, place, power) for text, place in zip(texts, places)], float)
+
+
+def wholes(texts, places):
+    """The whole numbers of a column."""
+    if set().union(*texts) <= DIGITS:
+        try:
+            return numpy.array(list(map(int, texts)), numpy.int64)
+        except (ValueError, OverflowError):
+            pass
+    return numpy.array([whole(text, place) for text, place in zip(texts, places)], numpy.int64)
+
+
 def clipped(text):
     """What a file says, short enough for a sentence on one line."""
     text = "".join(sign if sign.isprintable() else "?" for sign in str(text))
@@ -283,8 +306,10 @@ def neck_length(document, pair, image, radius):
 
 def rows_of(ids, wanted, place):
     """Rows of the particles with the wanted ids."""
-    row = {int(each): index for index, each in enumerate(ids)}
-    try:
-        return numpy.array([[row[int(each)] for each in ends] for ends in wanted], numpy.int32).reshape(-1, 2)
-    except KeyError as missing:
-        raise ConvertError(f"{place}: a bond names particle {missing.args[0]}, which is not there") from None
+    wanted = numpy.reshape(wanted, (-1, 2))
+    order = numpy.argsort(ids, kind="stable")
+    found = numpy.searchsorted(ids, wanted, sorter=order).clip(max=len(ids) - 1)
+    if not len(ids) and len(wanted) or len(ids) and (ids[order[found]] != wanted).any():
+        missing = wanted[ids[order[found]] != wanted][0] if len(ids) else wanted[0, 0]
+        raise ConvertError(f"{place}: a bond names particle {missing}, which is not there")
+    return order[found].astype(numpy.int32).reshape(-1, 2) if len(ids) else numpy.zeros((0, 2), numpy.int32)

@@ -7,7 +7,7 @@ import numpy
 
 import units
 from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, clipped, companion_of, joined_columns, number,
-                            particle_arrays, periodic_axes, series, split_columns, whole, without_companion, written)
+                            particle_arrays, periodic_axes, series, split_columns, wholes, without_companion, written)
 from convert_check import warn_of_loss
 from convert_found import Found
 from tables import Table
@@ -97,7 +97,7 @@ def keys_of(remarks, path):
 
 
 def whole_column(table, name):
-    return numpy.array([whole(text, table.place(row)) for row, text in enumerate(table.texts(name))], numpy.int64)
+    return wholes(table.texts(name), table.places)
 
 
 def radii(table, system, needed=("radius", "diameter")):
@@ -129,7 +129,7 @@ def read_csv(path, given):
     if "material" in table.names:
         labels = table.texts("material")
         if not table.is_text("material"):
-            labels = [whole(text, table.place(row)) for row, text in enumerate(labels)]
+            labels = wholes(labels, table.places).tolist()
     other = table.others(("x", "y", "z", "radius", "diameter", "id", "material"), system)
     particles.update(joined_columns(other))
     found = Found(path, path, particles, box=keys.pop("box", None), time=keys.pop("time", 0.0), labels=labels, first=0,

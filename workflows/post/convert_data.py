@@ -8,9 +8,8 @@ import re
 import numpy
 
 import units
-from convert_common import (ConvertError, bond_arrays, bounds, box_of, clipped, lines, number, particle_arrays, periodic_axes,
-                            series,
-                            warn, whole, written)
+from convert_common import (ConvertError, bond_arrays, bounds, box_of, clipped, lines, number, numbers, particle_arrays,
+                            periodic_axes, series, warn, whole, wholes, written)
 from convert_check import warn_of_loss
 from convert_found import Found, raised
 from convert_materials import materials_of
@@ -280,12 +279,12 @@ def read_data(path, given):
     column, places = atoms_of(parts, path, given)
     length = units.SYSTEMS[system][1]
     low, high = zip(*([number(text, place, length) for text in texts] for texts, place in (parts.limits[axis] for axis in "xyz")))
-    value = {name: numpy.array([number(text, place, units.power(system, name)) for text, place in zip(column[name], places)])
+    value = {name: numbers(column[name], places, units.power(system, name))
              for name in ("x", "y", "z", "diameter", "density")}
     small = numpy.flatnonzero(~(value["diameter"] > 0))
     if len(small):
         raise ConvertError(f"{places[small[0]]}: the diameter is {column['diameter'][small[0]]}, expected a positive one")
-    ids = numpy.array([whole(text, place) - shift for text, place in zip(column["id"], places)], numpy.int64)
+    ids = wholes(column["id"], places) - shift
     seen = {}
     for each, place in zip(ids.tolist(), places):
         if each in seen:

@@ -5,9 +5,8 @@ import numpy
 
 import units
 from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, bounds, box_of, clipped, companion_of, joined_columns,
-                            lines,
-                            number, particle_arrays, periodic_axes, split_columns, warn, whole, without_companion, words_for,
-                            written)
+                            lines, number, numbers, particle_arrays, periodic_axes, split_columns, warn, whole, wholes,
+                            without_companion, words_for, written)
 from convert_check import warn_of_loss
 from convert_found import Found
 from convert_materials import materials_of
@@ -173,17 +172,17 @@ def columns_of(frame, kinds, names=None):
 def values_of(name, texts, places, system):
     """The numbers of a column in SI units; None for a column of words."""
     if name in WHOLE:
-        return numpy.array([whole(text, place) for text, place in zip(texts, places)], numpy.int64)
+        return wholes(texts, places)
     if texts and name not in units.DIMENSION and not any(re.match(r"[-+]?\.?[0-9]", text) for text in texts):
         return None
     power = units.power(system, name)
     if power is None and system != "si" and places:
         warn(f"{places[0].rpartition(', line')[0]}: the unit of the column {clipped(name)} is not known; its numbers are left as "
              "they are")
-    values = [number(text, place, power or 0) for text, place in zip(texts, places)]
+    values = numbers(texts, places, power or 0)
     integer = bool(texts) and power in (None, 0) and name not in units.DIMENSION and all(re.fullmatch(r"[-+]?[0-9]{1,18}", text)
                                                                                          for text in texts)
-    return numpy.array(values, numpy.int64 if integer else float)
+    return numpy.array([int(text) for text in texts], numpy.int64) if integer else values
 
 
 def box_from(frame, length):
@@ -239,7 +238,7 @@ def radii_of(columns, places, system, place):
 def labels_of(columns, places):
     """What the particles are of: names of elements, unless these tell fewer apart than the types do."""
     kinds, names = columns.pop("type", None), columns.pop("element", None)
-    types = [whole(text, place) for text, place in zip(kinds, places)] if kinds is not None else None
+    types = wholes(kinds, places).tolist() if kinds is not None else None
     if names is not None and (types is None or len(set(zip(types, names))) == len(set(names))):
         return names
     return types

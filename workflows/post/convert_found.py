@@ -74,7 +74,8 @@ def with_box(found, like, given):
 def lent(found, like, document):
     """Radius, length, volume and image of the bonds of --like for those that have the same pair of ids."""
     bonds, other = found.bonds, like.get("bonds")
-    if other is None or not len(bonds["pair"]):
+    missing = any(numpy.isnan(bonds[name]).any() for name in ("radius", "length", "volume"))
+    if other is None or not missing and bonds["told"].all():
         return
     ids = found.shifted_ids(like)
     lenders = {}

@@ -10,8 +10,7 @@ import numpy
 
 import units
 from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, bounds, box_of, clipped, number, opened,
-                            particle_arrays,
-                            periodic_axes, warn, written)
+                            particle_arrays, periodic_axes, warn, written)
 from convert_check import warn_of_loss
 from convert_found import Found
 from vtu_file import Grid

@@ -4,8 +4,8 @@ import re
 import numpy
 
 import units
-from convert_common import (ConvertError, bounds, box_of, clipped, lines, number, particle_arrays, periodic_axes, warn, whole,
-                            words_for, written)
+from convert_common import (ConvertError, bounds, box_of, clipped, lines, number, numbers, particle_arrays, periodic_axes, warn,
+                            whole, wholes, words_for, written)
 from convert_check import warn_of_loss
 from convert_found import Found
 from convert_materials import materials_of
@@ -77,13 +77,13 @@ def array_of(column, cells, places, system):
             raise ConvertError(f"{places[0]}: the column {clipped(name)} does not hold T and F")
         values = numpy.array([[FLAGS[cell.lower()] for cell in each] for each in cells], numpy.uint8)
     elif kind == "I" and not measured:
-        values = numpy.array([[whole(cell, place) for cell in each] for each, place in zip(cells, places)], numpy.int64)
+        values = wholes([cell for each in cells for cell in each], [place for place in places for _ in range(width)])
     else:
         power = units.power(system, "x" if name == "pos" else name)
         if power is None and system != "si":
             warn(f"{places[0].rpartition(', line')[0]}: the unit of the column {clipped(name)} is not known; its numbers are left "
                  "as they are")
-        values = numpy.array([[number(cell, place, power or 0) for cell in each] for each, place in zip(cells, places)])
+        values = numbers([cell for each in cells for cell in each], [place for place in places for _ in range(width)], power or 0)
     values = values.reshape(len(cells), width)
     return values[:, 0] if width == 1 else values
 

@@ -7,10 +7,8 @@ the heading (numpy.savetxt)."""
 import csv
 import re
 
-import numpy
-
 import units
-from convert_common import NUMBER, ConvertError, clipped, lines, number, warn
+from convert_common import NUMBER, ConvertError, clipped, lines, numbers, warn
 
 SAME = {"r": "radius", "rad": "radius", "radii": "radius", "d": "diameter", "dia": "diameter", "matid": "material",
         "type": "material",
@@ -152,8 +150,10 @@ class Table:
                                f"'{clipped(point[1])}'; which of them is decimal is not known")
         self.rows = [[cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell for cell in row] for row in self.rows]
 
-    def place(self, row):
-        return f"{self.path}, line {self.at[row]}"
+    @property
+    def places(self):
+        """The place of each row, for messages."""
+        return [f"{self.path}, line {row}" for row in self.at]
 
     def texts(self, name):
         k = self.names.index(name)
@@ -181,7 +181,7 @@ class Table:
                                    "all columns")
             else:
                 warn(f"{self.path}: column '{clipped(name)}' has no unit; its numbers are taken to be in SI units")
-        values = numpy.array([number(text, self.place(row), power) for row, text in enumerate(self.texts(name))])
+        values = numbers(self.texts(name), self.places, power)
         return values * scale[0] / scale[1] + scale[2] if unit else values
 
     def others(self, known, system=None):
