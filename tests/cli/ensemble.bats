@@ -29,13 +29,23 @@ ensemble() { make -C "$ROOT/workflows/ensemble" PACKINGS="$PWD/packings" TEMPERA
     jq -e '.points | length == 4' made/fit.json
 }
 
-@test "the factor of the intervals is Student's" {
-    run -0 env PYTHONDONTWRITEBYTECODE=1 "$PYTHON" -c '
-import sys
-sys.path.insert(0, sys.argv[1])
-from ensemble import student_factor
-print(*(f"{student_factor(freedom):.3f}" for freedom in (1, 2, 4, 9, 30)))' "$ROOT/workflows/post"
-    assert_output "12.706 4.303 2.776 2.262 2.042"
+@test "analyze mean: the intervals are Student's, of what all results have, and states are refused" {
+    for n in 2 3 5 10 31; do
+        seq 1 $n | sed 's/.*/{"format":"test","version":1,"a":&,"b":-1,"name":"x","only":[&]}/' >results.jsonl
+        run -0 bash -c '"$ANALYZE" mean results.jsonl | jq -r "[.documents, .mean.a, .mean.b, ((.interval.a[1] - .mean.a) / .standard_error.a), (.mean | length)] | @tsv"'
+        read -r documents mean other factor length <<<"$output"
+        near "$mean" "$(awk -v n=$n 'BEGIN { print (n + 1) / 2 }')" 1e-14
+        assert_equal "$documents $other $length" "$n -1 2"
+        near "$factor" "$(case $n in 2) echo 12.7062047;; 3) echo 4.3026527;; 5) echo 2.7764451;; 10) echo 2.2621572;; 31) echo 2.0422725;; esac)" 1e-7
+    done
+    run -0 bash -c 'head -1 results.jsonl | "$ANALYZE" mean | jq -c "[.mean.a, .standard_deviation.a, .interval.a]"'
+    assert_output '[1,null,null]'
+    run -0 bash -c 'head -3 results.jsonl | "$ANALYZE" mean --table'
+    assert_line --regexp '^ *a +3 +2 +-0.48414 +4.4841 +1$'
+    run -1 "$ANALYZE" mean "$DATA/two_spheres.jsonl"
+    assert_output --partial "document 1: is a state, analyze mean reads results"
+    run -1 "$ANALYZE" mean /dev/null
+    assert_output "analyze mean: /dev/null: holds no document"
 }
 
 @test "a second call makes nothing, a changed case only what depends on it" {

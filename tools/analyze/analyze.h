@@ -14,5 +14,6 @@ int elastic(int argc, char** argv);
 int conductivity(int argc, char** argv);
 int voxel(int argc, char** argv);
 int fit(int argc, char** argv);
+int mean(int argc, char** argv);
 
 }  // namespace kiln::analyze

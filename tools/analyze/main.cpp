@@ -27,6 +27,7 @@ constexpr std::array subcommands{
     Subcommand{"conductivity", "conductivity of a periodic cell of bonded particles", analyze::conductivity},
     Subcommand{"voxel", "a state as an image of voxels, for NumPy or ParaView", analyze::voxel},
     Subcommand{"fit", "laws of Young's modulus against porosity through several tests or measurements", analyze::fit},
+    Subcommand{"mean", "means of several results, with their intervals of confidence", analyze::mean},
 };
 
 /// `analyze`, `analyze --help`, or a subcommand that does not exist.

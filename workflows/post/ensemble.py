@@ -1,14 +1,12 @@
 """ensemble.py: means of every number over the packings of an ensemble, with 95 % confidence intervals, as text, CSV and JSON.
 
-The interval is mean +- t s/sqrt(n), s the standard deviation of the n packings and t of Student's distribution with n - 1 degrees
-of freedom."""
+Means and intervals are those of `analyze mean`: mean +- t s/sqrt(n), s the standard deviation of the n packings and t of Student's
+distribution with n - 1 degrees of freedom."""
 import argparse
 import csv
 import json
-import math
 import pathlib
-
-import numpy
+import subprocess
 
 from dem_state import read_file
 
@@ -25,41 +23,39 @@ NUMBERS = (  # heading, unit, factor, file, and how the number is read from it
 )
 
 
-def student_factor(freedom):
-    """t with P(|x| < t) = CONFIDENCE. With x = sqrt(n) tan(angle) the density becomes cos(angle)^(n - 1), which is summed."""
-    angle = numpy.linspace(0.0, math.pi / 2, 200_001)
-    density = numpy.cos(angle)**(freedom - 1)
-    share = numpy.concatenate([[0.0], numpy.cumsum((density[1:] + density[:-1]) / 2)])
-    return math.sqrt(freedom) * math.tan(numpy.interp(CONFIDENCE, share / share[-1], angle))
+def means(analyze, documents):
+    """What `analyze mean` says of documents that have the same numbers."""
+    lines = "".join(json.dumps({"format": "dem-ensemble", "version": 1, **each}) + "\n" for each in documents)
+    return json.loads(subprocess.run([analyze, "mean"], input=lines, capture_output=True, check=True, text=True).stdout)
 
 
-def entry(case, name, unit, values):
+def entry(case, name, unit, said):
     """Mean, standard deviation and interval; the last two are null for a single packing."""
-    mean, several = float(numpy.mean(values)), len(values) > 1
-    deviation = float(numpy.std(values, ddof=1)) if several else None
-    reach = student_factor(len(values) - 1) * deviation / math.sqrt(len(values)) if several else None
+    interval = said["interval"][name] or (None, None)
     return {
         "case": case,
         "quantity": name,
         "unit": unit,
-        "packings": len(values),
-        "mean": mean,
-        "standard_deviation": deviation,
-        "lower": mean - reach if several else None,
-        "upper": mean + reach if several else None
+        "packings": said["documents"],
+        "mean": said["mean"][name],
+        "standard_deviation": said["standard_deviation"][name],
+        "lower": interval[0],
+        "upper": interval[1]
     }
 
 
-def entries(run, packings, temperatures):
+def entries(run, packings, temperatures, analyze):
     table = []
     for temperature in temperatures:
-        for name, unit, factor, kind, number in NUMBERS:
-            values = [factor * number(read_file(run / packing / temperature / f"{kind}.json")[0]) for packing in packings]
-            table.append(entry(temperature, name, unit, values))
+        results = [{kind: read_file(run / packing / temperature / f"{kind}.json")[0] for kind in ("density", "bonds", "modulus")}
+                   for packing in packings]
+        said = means(analyze,
+                     [{name: factor * number(each[kind]) for name, _, factor, kind, number in NUMBERS} for each in results])
+        table.extend(entry(temperature, name, unit, said) for name, unit, *_ in NUMBERS)
     fits = [read_file(run / packing / "fit.json")[0] for packing in packings]
-    for name in fits[0]["standard_errors"]:
-        factor, unit = (1e-9, "GPa") if name == "E0" else (1.0, "")
-        table.append(entry(f"fit, {fits[0]['law']}", name, unit, [factor * fit[name] for fit in fits]))
+    names = {name: (1e-9, "GPa") if name == "E0" else (1.0, "") for name in fits[0]["standard_errors"]}
+    said = means(analyze, [{name: factor * fit[name] for name, (factor, _) in names.items()} for fit in fits])
+    table.extend(entry(f"fit, {fits[0]['law']}", name, unit, said) for name, (_, unit) in names.items())
     return table
 
 
@@ -84,9 +80,10 @@ def main():
                         help="folder with PACKING/TEMPERATURE/{density,bonds,modulus}.json and PACKING/fit.json")
     parser.add_argument("--packings", nargs="+", required=True)
     parser.add_argument("--temperatures", nargs="+", required=True)
+    parser.add_argument("--analyze", default="analyze", help="the program that takes the means")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="table to write; also as .csv and .json")
     given = parser.parse_args()
-    table = entries(given.run, given.packings, given.temperatures)
+    table = entries(given.run, given.packings, given.temperatures, given.analyze)
     given.output.with_suffix(".json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
     with open(given.output.with_suffix(".csv"), "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, table[0].keys(), lineterminator="\n")
