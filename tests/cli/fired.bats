@@ -32,12 +32,13 @@ fired() {
     run -0 env PYTHONDONTWRITEBYTECODE=1 "$PYTHON" - "$ROOT/workflows/post" <<'END'
 import sys
 sys.path.insert(0, sys.argv[1])
-from fired import programme, temperature_for, theta_along
-time, kelvin = programme("25C 10K/min 1200C 1h 10K/min 25C")
+from fired import temperature_for, theta_along
+from schedules import corners
+time, kelvin = corners("25C 10K/min 1200C 1h 10K/min 25C")
 print(time.tolist(), (kelvin - 273.15).round(9).tolist())
 theta = theta_along(time, kelvin, 475e3)[1][-1]
 print(round(temperature_for("25C 10K/min 1000C 1h 10K/min 25C", theta, 475e3) - 273.15, 6))
-hold = theta_along(*programme("1200C 1h"), 475e3)[1][-1]
+hold = theta_along(*corners("1200C 1h"), 475e3)[1][-1]
 print(1.0 < theta / hold < 1.2)  # heating and cooling at 10 K/min add a few minutes to the hold
 END
     assert_output $'[0.0, 7050.0, 10650.0, 17700.0] [25.0, 1200.0, 1200.0, 25.0]\n1200.0\nTrue'

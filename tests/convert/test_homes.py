@@ -1,15 +1,22 @@
-"""test_homes.py: what Python has of its own beside the library says the same: units, built-in materials."""
+"""test_homes.py: what Python has of its own beside the library says the same: units, schedules, densities, built-in materials."""
 import json
 import math
 import os
 import re
 import subprocess
+import tempfile
 import unittest
 
-from in_process import ROOT
+import numpy
+from in_process import ROOT, convert_common, dem_state, saved
 
 import convert_materials  # noqa: E402  (in_process says where they are)
+import schedules  # noqa: E402
 import units  # noqa: E402
+
+
+def program(name):
+    return os.environ.get(name, os.path.join(ROOT, "build", "bin", name.lower()))
 
 
 def units_of_the_library():
@@ -45,10 +52,57 @@ class Homes(unittest.TestCase):
                 value = float(text)
                 self.assertEqual(units.shifted(units.shown(value, power), power), value)
 
+    def test_signs_of_units(self):
+        """How signs are spelled, as the library spells them."""
+        with open(os.path.join(ROOT, "lib", "io", "quantity.cpp"), encoding="utf-8") as file:
+            pairs = re.findall(r'\{"([^"]+)", "([^"]*)"\}', file.read())
+        told = tuple((sign.encode().decode("unicode_escape") if "\\u" in sign else sign, plain) for sign, plain in pairs)
+        self.assertEqual(units.SPELLINGS, told)
+
+    def test_schedules(self):
+        """At each step that sinter made the temperature is that of the schedule; what it refuses is refused."""
+        with tempfile.TemporaryDirectory() as folder:
+            green, history = os.path.join(folder, "green.kiln"), os.path.join(folder, "history.jsonl")
+            subprocess.run([program("SINTER"), "green", "-q", "-n", "20", "-o", green], check=True)
+            for text in ("25C 10K/min 1150C 10min 20K/min 25C", "RT 600 C/h 1100\u00b0C 0.5h 1 K/s 800K",
+                         "900C 1d", "1000 degC 5 min 5C/min 1050C"):
+                subprocess.run([program("SINTER"), "-q", "--schedule", text, "--history", history, "-o", os.devnull, green],
+                               check=True)
+                with open(history, encoding="utf-8") as file:
+                    steps = [json.loads(line) for line in file]
+                time, kelvin = schedules.corners(text)
+                for step in steps:
+                    self.assertAlmostEqual(numpy.interp(step["time"], time, kelvin), step["temperature"],
+                                           delta=1e-9 * step["temperature"])
+                self.assertGreater(len(steps), 1, text)
+            for text in ("", "25C", "10K/min 25C", "25C 10K/min", "25C 1200C", "25C 10K/min 10K/min 1200C", "25C -5min",
+                         "25C 5 parsec"):
+                with self.assertRaises(schedules.ScheduleError, msg=text):
+                    schedules.corners(text)
+                ended = subprocess.run([program("SINTER"), "-q", "--schedule", text, green], capture_output=True, check=False)
+                self.assertEqual(ended.returncode, 2, text)
+
+    def test_density_and_lengths(self):
+        """Volumes, relative density and Eq. 4, on bonds that bondify made."""
+        with tempfile.TemporaryDirectory() as folder:
+            bonded = os.path.join(folder, "bonded.kiln")
+            green = subprocess.run([program("SINTER"), "green", "-q", "-n", "60", "--method", "affine", "--compact-to", "0.6"],
+                                   capture_output=True, check=True).stdout
+            subprocess.run([program("BONDIFY"), "-q", "-o", bonded], input=green, check=True)
+            (state, ) = dem_state.read_file(bonded)
+            said = json.loads(subprocess.run([program("ANALYZE"), "info", bonded], capture_output=True, check=True).stdout)
+            self.assertAlmostEqual(dem_state.relative_density(state), said["relative_density"], delta=1e-12)
+            bonds = state["bonds"]
+            length = convert_common.neck_length(state, bonds["pair"], bonds["image"], bonds["radius"])
+            numpy.testing.assert_allclose(length, bonds["length"], rtol=0, atol=1e-20)
+            del bonds["volume"]
+            bare = saved(os.path.join(folder, "bare.kiln"), state)
+            said = json.loads(subprocess.run([program("ANALYZE"), "info", bare], capture_output=True, check=True).stdout)
+            self.assertAlmostEqual(dem_state.relative_density(state), said["relative_density"], delta=1e-12)
+
     def test_built_in_materials(self):
-        program = os.environ.get("SINTER", os.path.join(ROOT, "build", "bin", "sinter"))
         for name, material in convert_materials.BUILT_IN.items():
-            made = subprocess.run([program, "green", "-q", "-n", "8", "--material", name, "--text"],
+            made = subprocess.run([program("SINTER"), "green", "-q", "-n", "8", "--material", name, "--text"],
                                   capture_output=True, check=True)
             self.assertEqual(json.loads(made.stdout)["materials"], [material])
 

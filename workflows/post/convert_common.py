@@ -10,6 +10,7 @@ import zlib
 import numpy
 
 import units
+from dem_state import cylinder_volume
 
 SMALL, LARGE = ("id", "position", "radius", "material"), ("pair", "image", "radius", "length", "volume")
 # float() knows also 1_0, nan and digits of other scripts.
@@ -272,18 +273,13 @@ def particle_arrays(document):
     return particles
 
 
-def default_volume(radius, length):
-    """Volume of a bond's cylinder, m3."""
-    return math.pi * radius**2 * length.clip(min=0)
-
-
 def bond_arrays(document):
     """Bonds with the arrays that may be missing from a stream; None for a state without bonds."""
     if "bonds" not in document:
         return None
     bonds = dict(document["bonds"])
     bonds.setdefault("image", numpy.zeros((len(bonds["radius"]), 3), numpy.int8))
-    bonds.setdefault("volume", default_volume(bonds["radius"], bonds["length"]))
+    bonds.setdefault("volume", cylinder_volume(bonds["radius"], bonds["length"]))
     return bonds
 
 

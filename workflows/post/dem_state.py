@@ -105,10 +105,15 @@ def read_file(path):
         return list(read(stream))
 
 
+def cylinder_volume(radius, length):
+    """Volume of bonds that do not say it, m3: of their cylinders."""
+    return math.pi * radius**2 * length.clip(min=0)
+
+
 def relative_density(state):
     """Volume of particles and bonds over the volume of the box."""
-    solid = 4 / 3 * math.pi * (state["particles"]["radius"] ** 3).sum()
+    solid = 4 / 3 * math.pi * (state["particles"]["radius"]**3).sum()
     if "bonds" in state:
         bonds = state["bonds"]
-        solid += (bonds["volume"] if "volume" in bonds else math.pi * bonds["radius"] ** 2 * bonds["length"].clip(min=0)).sum()
+        solid += (bonds["volume"] if "volume" in bonds else cylinder_volume(bonds["radius"], bonds["length"])).sum()
     return solid / abs(numpy.linalg.det(state["box"]["vectors"]))

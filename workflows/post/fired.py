@@ -13,38 +13,12 @@ import re
 import numpy
 
 from dem_state import read_file
+from schedules import ScheduleError, corners
+from units import ZERO_CELSIUS
 
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
-ZERO_CELSIUS = 273.15  # K
-UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}
 VALID = 0.9  # relative density above which the model, without grain growth, says nothing
 POINTS = 4000  # of the quadrature along each part of a schedule
-
-
-def temperature_of(word):
-    found = re.fullmatch(r"([-0-9.]+)([CK])", word)
-    return float(found[1]) + (ZERO_CELSIUS if found[2] == "C" else 0.0) if found else None
-
-
-def programme(schedule, hottest=None):
-    """Times (s) and temperatures (K) along a schedule such as "25C 10K/min 1200C 1h 10K/min 25C"; hottest replaces the peak."""
-    peak = max(value for value in map(temperature_of, schedule.split()) if value is not None)
-    time, kelvin, rate = [0.0], [], None
-    for word in schedule.split():
-        target = temperature_of(word)
-        if target is not None:
-            target = hottest if hottest is not None and target == peak else target
-            if kelvin:
-                time.append(time[-1] + abs(target - kelvin[-1]) / rate)
-            kelvin.append(target)
-        elif found := re.fullmatch(r"([0-9.]+)K/(s|min|h)", word):
-            rate = float(found[1]) / UNITS[found[2]]
-        elif found := re.fullmatch(r"([0-9.]+)(s|min|h)", word):
-            time.append(time[-1] + float(found[1]) * UNITS[found[2]])
-            kelvin.append(kelvin[-1])
-        else:
-            raise SystemExit(f"fired.py: '{word}' of the schedule '{schedule}' is not understood")
-    return numpy.array(time), numpy.array(kelvin)
 
 
 def theta_along(time, kelvin, energy):
@@ -59,7 +33,7 @@ def master_curve(run, case, schedule, energy):
     """Densities and theta of the steps of a firing that densified the packing."""
     with open(run / case / "history.jsonl", encoding="utf-8") as lines:
         steps = [json.loads(line) for line in lines]
-    fine, theta = theta_along(*programme(schedule), energy)
+    fine, theta = theta_along(*corners(schedule), energy)
     density = numpy.array([step["relative_density"] for step in steps])
     reached = numpy.interp([step["time"] for step in steps], fine, theta)
     rising = numpy.concatenate([[True], (numpy.diff(density) > 0) & (numpy.diff(reached) > 0)])
@@ -71,13 +45,13 @@ def temperature_for(schedule, theta, energy):
     low, high = 900.0, 2300.0
     for _ in range(50):
         middle = (low + high) / 2
-        low, high = (middle, high) if theta_along(*programme(schedule, middle), energy)[1][-1] < theta else (low, middle)
+        low, high = (middle, high) if theta_along(*corners(schedule, middle), energy)[1][-1] < theta else (low, middle)
     return (low + high) / 2
 
 
 def compare(run, schedules, measured):
     """The firings, and the density of the model against the temperature of the firing."""
-    peak = {case: programme(schedule)[1].max() for case, schedule in schedules.items()}
+    peak = {case: corners(schedule)[1].max() for case, schedule in schedules.items()}
     hottest = max(peak, key=peak.get)
     material = read_file(run / hottest / "fired.kiln")[0]["materials"][0]
     energy = material["grain_boundary_diffusion"]["activation_energy"]
@@ -96,10 +70,10 @@ def compare(run, schedules, measured):
         if entry["measured"] is not None:
             needed = float(numpy.exp(numpy.interp(entry["measured"], density, numpy.log(theta))))
             entry["equivalent_temperature"] = temperature_for(schedule, needed, energy)
-            entry["slower_by"] = theta_along(*programme(schedule), energy)[1][-1] / needed
+            entry["slower_by"] = theta_along(*corners(schedule), energy)[1][-1] / needed
         firings.append(entry)
     grid = numpy.linspace(min(peak.values()) - 100.0, max(peak.values()) + 25.0, 100)
-    reached = [theta_along(*programme(schedules[hottest], kelvin), energy)[1][-1] for kelvin in grid]
+    reached = [theta_along(*corners(schedules[hottest], kelvin), energy)[1][-1] for kelvin in grid]
     curve = numpy.interp(numpy.log(reached), numpy.log(theta), density)
     return {
         "firings": firings,
@@ -165,7 +139,10 @@ def main():
     parser.add_argument("--measured", required=True, help="table of measured densities")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="text to write; also as .json")
     given = parser.parse_args()
-    result = compare(given.run, {path.stem: read_schedule(path) for path in given.firings}, read_measured(given.measured))
+    try:
+        result = compare(given.run, {path.stem: read_schedule(path) for path in given.firings}, read_measured(given.measured))
+    except ScheduleError as error:
+        raise SystemExit(f"fired.py: {error}") from None
     given.output.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     given.output.write_text(as_text(result), encoding="utf-8")
 

@@ -5,6 +5,7 @@ import math
 import re
 
 ZERO_CELSIUS = 273.15  # K
+ROOM_TEMPERATURE = 298.15  # K, what "RT" says
 
 # Of each dimension: the unit's name, and by what its number is multiplied, divided and shifted to be in SI. Where the factor would
 # not be exact the divisor is: 100 nm is 1e-7 m and not its neighbour.
@@ -12,9 +13,10 @@ TABLE = {
     "length": {"m": (1.0,), "cm": (1.0, 1e2), "mm": (1.0, 1e3), "um": (1.0, 1e6), "nm": (1.0, 1e9)},
     "area": {"m2": (1.0,), "mm2": (1.0, 1e6)},
     "volume": {"m3": (1.0,), "l": (1.0, 1e3)},
-    "time": {"s": (1.0,), "ms": (1.0, 1e3), "min": (60.0,), "h": (3600.0,)},
+    "time": {"s": (1.0,), "ms": (1.0, 1e3), "us": (1.0, 1e6), "min": (60.0,), "h": (3600.0,), "d": (86400.0,)},
     "temperature": {"K": (1.0,), "C": (1.0, 1.0, ZERO_CELSIUS)},
-    "heating_rate": {"K/s": (1.0,), "K/min": (1.0, 60.0), "K/h": (1.0, 3600.0)},
+    "heating_rate": {"K/s": (1.0,), "K/min": (1.0, 60.0), "K/h": (1.0, 3600.0),
+                     "C/s": (1.0,), "C/min": (1.0, 60.0), "C/h": (1.0, 3600.0)},
     "pressure": {"Pa": (1.0,), "kPa": (1e3,), "MPa": (1e6,), "GPa": (1e9,)},
     "force": {"N": (1.0,), "kN": (1e3,), "mN": (1.0, 1e3), "uN": (1.0, 1e6), "nN": (1.0, 1e9)},
     "velocity": {"m/s": (1.0,), "mm/s": (1.0, 1e3), "um/s": (1.0, 1e6), "nm/s": (1.0, 1e9)},
@@ -31,8 +33,9 @@ TABLE = {
 COLUMNS_ONLY = {
     "area": {"cm2": (1.0, 1e4), "um2": (1.0, 1e12), "nm2": (1.0, 1e18)},
     "volume": {"cm3": (1.0, 1e6), "mm3": (1.0, 1e9), "um3": (1.0, 1e18), "nm3": (1.0, 1e27)},
-    "time": {"us": (1.0, 1e6), "ns": (1.0, 1e9), "d": (86400.0,)},
-    "heating_rate": {"C/s": (1.0,), "C/min": (1.0, 60.0), "C/h": (1.0, 3600.0)},
+    "time": {"ns": (1.0, 1e9)},
+    "pressure": {"N/mm2": (1e6,), "kN/mm2": (1e9,)},
+    "fraction": {"%": (1.0, 1e2), "percent": (1.0, 1e2)},
     "velocity": {"cm/s": (1.0, 1e2)},
     "moment": {"N m": (1.0,), "Nm": (1.0,), "Nmm": (1.0, 1e3), "mN m": (1.0, 1e3)},
     "mass": {"kg": (1.0,), "g": (1.0, 1e3), "mg": (1.0, 1e6), "ug": (1.0, 1e9)},
