@@ -47,6 +47,11 @@ run_page() {
     jq -e '.history[-1].arguments == ["--volume", "cap-corrected"]' <(head -1 mine/0.88/bonded.kiln)
 }
 
+@test "files go to other programs and come back as the page says" {
+    run_page docs/formats.md
+    assert_line '["alumina","zirconia"]'
+}
+
 @test "the drawing of state, neck and bond is drawn by its script" {
     run -0 "$PYTHON" "$ROOT/docs/figures/state_neck_bond.py" -o state.png
     run -0 "$PYTHON" - state.png "$ROOT/docs/figures/state.png" <<'END'
@@ -60,7 +65,7 @@ END
 @test "no page has commands that are not run here" {
     run -0 grep -lE '^```(sh|bash|console|shell)$' -r "$ROOT/docs" "$ROOT/README.md" "$ROOT/CONTRIBUTING.md"
     for page in "${lines[@]}"; do
-        [[ $page == */README.md || $page == */tutorial.md || $page == */replace-a-stage.md ]] || fail "$page has commands that no test runs"
+        [[ $page == */README.md || $page == */tutorial.md || $page == */replace-a-stage.md || $page == */formats.md ]] || fail "$page has commands that no test runs"
     done
 }
 
