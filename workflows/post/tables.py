@@ -53,7 +53,7 @@ def name_and_unit(heading):
     if not found:
         found = re.fullmatch(r"(.*?)\s*/\s*(\S+)|([a-zA-Z ]+)_([^_]+)", heading)
         if found:
-            name, unit = found[1] or found[3], found[2] or found[4]
+            name, unit = (found[1], found[2]) if found[2] else (found[3], found[4])
             dimension = units.DIMENSION.get(SAME.get(name.lower(), name.lower()))
             found = (None, name, unit) if dimension and units.scale_of(unit, dimension) else None
     name, unit = (found[1], found[2]) if found else (heading, None)

@@ -99,7 +99,7 @@ class Grid:
                 raise ConvertError(f"{self.path}: a number of the array '{clipped(title)}' is beyond its type") from None
         try:
             raw = self.bytes_of(element, form)
-        except (zlib.error, binascii.Error, ValueError, IndexError, MemoryError):
+        except (zlib.error, binascii.Error, ValueError, IndexError, MemoryError, OverflowError):
             raise ConvertError(f"{self.path}: the array '{clipped(title)}' is damaged") from None
         if len(raw) % int(kind[1]):
             raise ConvertError(f"{self.path}: the array '{clipped(title)}' is damaged")
