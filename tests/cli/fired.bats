@@ -44,6 +44,17 @@ END
     assert_output $'[0.0, 7050.0, 10650.0, 17700.0] [25.0, 1200.0, 1200.0, 25.0]\n1200.0\nTrue'
 }
 
+@test "measured densities are read as a spreadsheet writes them; another schedule or table is refused in one sentence" {
+    printf '\xef\xbb\xbffiring;relative_density (%%)\n1100C;67,0\n1200C;79,0\n' >german.csv
+    fire() { env PYTHONDONTWRITEBYTECODE=1 "$PYTHON" "$ROOT/workflows/post/fired.py" fired --firings "$ROOT"/workflows/fired/firings/*.toml -o other.txt "$@"; }
+    fire --measured german.csv
+    run -0 jq -c '[.firings[] | .measured]' other.json
+    assert_output '[0.67,null,0.79,null]'
+    printf 'firing,density\n1100C,0.67\n' >without.csv
+    run -1 fire --measured without.csv
+    assert_output "fired.py: without.csv: has no column relative_density, only firing, density"
+}
+
 @test "a second call makes nothing" {
     fired SINTER=false ANALYZE=false
 }

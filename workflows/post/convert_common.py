@@ -28,14 +28,14 @@ class Voice:
     """Where warnings go: once each, to stderr, or nowhere."""
 
     def __init__(self):
-        self.quiet, self.said = False, []
+        self.name, self.quiet, self.said = "dem-convert", False, []
 
     def __call__(self, sentence):
         if sentence in self.said:
             return
         self.said.append(sentence)
         if not self.quiet:
-            print(f"dem-convert: warning: {sentence}", file=sys.stderr)
+            print(f"{self.name}: warning: {sentence}", file=sys.stderr)
 
 
 warn = Voice()

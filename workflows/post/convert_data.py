@@ -118,7 +118,7 @@ def title_of(head, path, given):
     if given.time_step and not time:
         if not step:
             raise ConvertError(f"{path}: does not say its step; --time-step has nothing to count")
-        seconds = int(step[1]) * given.time_step
+        seconds = units.times(given.time_step, int(step[1]))
     elif given.time_step:
         raise ConvertError(f"{path}: says its time; --time-step is for one that says a step")
     return said or given.units or "si", boundary and [each == "p"

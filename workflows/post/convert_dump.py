@@ -312,7 +312,7 @@ def time_of(frame, system, given, path):
         return number(*frame.line("TIME"), units.SYSTEMS[system][2])
     if frame.step() and not given.time_step:
         warn(f"{path}: says steps and no times; all are taken to be at 0 s, --time-step says how long a step is")
-    return frame.step() * (given.time_step or 0.0)
+    return units.times(given.time_step or 0.0, frame.step())
 
 
 def read_dump(path, given):

@@ -4,6 +4,7 @@ import json
 import style
 from dem_state import read_file, relative_density
 from style import pyplot
+from units import ZERO_CELSIUS
 
 
 def draw(steps, picks):
@@ -17,7 +18,7 @@ def draw(steps, picks):
     low, high = steps[0]["relative_density"], max(steps[-1]["relative_density"], *(density for _, density in picks))
     axes.set_xlim(0, 1.06 * max(time for time, _ in picks))
     axes.set_ylim(low - 0.02, high + 0.03)
-    celsius = steps[-1]["temperature"] - 273.15
+    celsius = steps[-1]["temperature"] - ZERO_CELSIUS
     axes.set_xlabel(f"Time at {celsius:.0f} °C, s")
     axes.set_ylabel("Relative density")
     return figure

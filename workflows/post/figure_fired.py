@@ -3,8 +3,8 @@ import json
 
 import style
 from style import pyplot
+from units import ZERO_CELSIUS
 
-ZERO_CELSIUS = 273.15  # K
 VALID = 0.9  # relative density
 
 

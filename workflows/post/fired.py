@@ -5,7 +5,6 @@ H. Su & D. L. Johnson, J. Am. Ceram. Soc. 79 (1996) 3211). The history of the ho
 with it follow the density after any other firing, the firing that gives a wanted density, and the factor by which diffusion would
 have to be slower."""
 import argparse
-import csv
 import json
 import pathlib
 import re
@@ -13,7 +12,9 @@ import re
 import numpy
 
 from dem_state import read_file
+from convert_common import ConvertError, warn
 from schedules import ScheduleError, corners
+from tables import Table
 from units import ZERO_CELSIUS
 
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
@@ -120,9 +121,8 @@ def as_text(result):
 
 
 def read_measured(path):
-    with open(path, encoding="utf-8") as stream:
-        rows = csv.DictReader(line for line in stream if not line.startswith("#"))
-        return {row["firing"]: float(row["relative_density"]) for row in rows}
+    table = Table(path)
+    return dict(zip(table.texts("firing"), table.values("relative_density").tolist()))
 
 
 def read_schedule(path):
@@ -139,9 +139,10 @@ def main():
     parser.add_argument("--measured", required=True, help="table of measured densities")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="text to write; also as .json")
     given = parser.parse_args()
+    warn.name = "fired.py"
     try:
         result = compare(given.run, {path.stem: read_schedule(path) for path in given.firings}, read_measured(given.measured))
-    except ScheduleError as error:
+    except (ScheduleError, ConvertError) as error:
         raise SystemExit(f"fired.py: {error}") from None
     given.output.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     given.output.write_text(as_text(result), encoding="utf-8")

@@ -155,8 +155,13 @@ class Table:
         """The place of each row, for messages."""
         return [f"{self.path}, line {row}" for row in self.at]
 
+    def index(self, name):
+        if name not in self.names:
+            raise ConvertError(f"{self.path}: has no column {name}, only {', '.join(map(clipped, self.names))}")
+        return self.names.index(name)
+
     def texts(self, name):
-        k = self.names.index(name)
+        k = self.index(name)
         return [row[k] for row in self.rows]
 
     def is_text(self, name):
@@ -165,7 +170,7 @@ class Table:
 
     def values(self, name, system=None):
         """The numbers of a column in SI units. A unit that is missing where one has to be comes from the style of units."""
-        unit, dimension, power = self.units[self.names.index(name)], units.DIMENSION.get(units.stem(name)), 0
+        unit, dimension, power = self.units[self.index(name)], units.DIMENSION.get(units.stem(name)), 0
         if unit:
             scale = units.scale_of(unit, dimension if dimension in units.TABLE or dimension in units.COLUMNS_ONLY else None)
             if scale is None:

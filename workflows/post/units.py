@@ -116,6 +116,11 @@ def shifted(text, power_of_ten):
     return float(decimal.Decimal(text).scaleb(power_of_ten)) if power_of_ten else float(text)
 
 
+def times(value, count):
+    """So many times a number, such as 10 steps of 1e-6 s: 1e-5 and not its neighbour."""
+    return float(decimal.Decimal(repr(value)) * count)
+
+
 def shown(value, power_of_ten=0):
     """A number divided by a power of ten, in digits from which shifted() makes the same number."""
     text = repr(float(value))
