@@ -1,6 +1,7 @@
 // quantity.cpp: the table of units and the parser of quantities.
 #include "io/quantity.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -15,14 +16,14 @@ namespace {
 struct Unit {
     Dimension dimension;
     const char* name;
-    double factor;         // SI value of one unit, times the divisor
-    double divisor = 1.0;  // exact where the factor would not be: 100nm is 1e-7 and not its neighbour
-    double offset = 0.0;   // SI value of zero units
+    Scale scale;
 };
 
 constexpr double zero_celsius = 273.15;  // K, definition of the Celsius scale
 
 constexpr Unit units[] = {
+    {Dimension::fraction, "%", 1.0, 1e2},
+    {Dimension::fraction, "percent", 1.0, 1e2},
     {Dimension::length, "m", 1.0},
     {Dimension::length, "cm", 1.0, 1e2},
     {Dimension::length, "mm", 1.0, 1e3},
@@ -50,6 +51,8 @@ constexpr Unit units[] = {
     {Dimension::pressure, "kPa", 1e3},
     {Dimension::pressure, "MPa", 1e6},
     {Dimension::pressure, "GPa", 1e9},
+    {Dimension::pressure, "N/mm2", 1e6},
+    {Dimension::pressure, "kN/mm2", 1e9},
     {Dimension::force, "N", 1.0},
     {Dimension::force, "kN", 1e3},
     {Dimension::force, "mN", 1.0, 1e3},
@@ -106,6 +109,19 @@ std::string spelled(std::string_view given) {
 
 }  // namespace
 
+bool is_unit(std::string_view text) {
+    const std::string name = spelled(text);
+    return std::ranges::any_of(units, [&](const Unit& unit) { return name == unit.name; });
+}
+
+std::optional<Scale> scale_of(std::string_view unit, Dimension dimension) {
+    if (unit.empty() && (dimension == Dimension::none || dimension == Dimension::fraction)) return Scale{1.0};
+    const std::string name = spelled(unit);
+    const auto found =
+        std::ranges::find_if(units, [&](const Unit& each) { return each.dimension == dimension && name == each.name; });
+    return found == std::end(units) ? std::nullopt : std::optional(found->scale);
+}
+
 std::string known_units(Dimension dimension) {
     std::string list;
     for (const Unit& unit : units)
@@ -122,23 +138,17 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::result_out_of_range) throw TextError(given + " is out of the range of numbers");
     if (error != std::errc() || !std::isfinite(number)) throw TextError(given + " is not a number");
-    std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
-    while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
-    const std::string name = spelled(rest);
-    if (dimension == Dimension::none) {
-        if (!name.empty()) throw TextError(given + " has a unit where a plain number is required");
-        return number;
-    }
-    for (const Unit& unit : units)
-        if (unit.dimension == dimension && name == unit.name) {
-            const double value = number * unit.factor / unit.divisor + unit.offset;
-            if (!std::isfinite(value)) throw TextError(given + " is out of the range of numbers");
-            if (dimension == Dimension::temperature && value <= 0.0)
-                throw TextError(given + " is not above absolute zero");
-            return value;
-        }
-    const std::string problem = name.empty() ? " has no unit" : " has no unit of the right kind";
-    throw TextError(given + problem + "; known here: " + known_units(dimension));
+    std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
+    while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);
+    const auto scale = scale_of(unit, dimension);
+    if (!scale && dimension == Dimension::none) throw TextError(given + " has a unit where a plain number is required");
+    if (!scale)
+        throw TextError(given + (unit.empty() ? " has no unit" : " has no unit of the right kind") +
+                        "; known here: " + known_units(dimension));
+    const double value = scale->si(number);
+    if (!std::isfinite(value)) throw TextError(given + " is out of the range of numbers");
+    if (dimension == Dimension::temperature && value <= 0.0) throw TextError(given + " is not above absolute zero");
+    return value;
 }
 
 }  // namespace kiln::io

@@ -1,6 +1,7 @@
 // quantity.h: quantities with units as people write them, such as 50nm, 1200C, 10K/min; a number without its unit is an error.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,7 @@ namespace kiln::io {
 
 enum class Dimension {
     none,              // plain number
+    fraction,          // plain number, or % of it
     length,            // m
     area,              // m2
     volume,            // m3
@@ -31,6 +33,22 @@ enum class Dimension {
 /// superscripts are read as the units of the list are spelled, and RT is a temperature of 25 C. Throws TextError that says what was
 /// given and which units are known.
 double parse_quantity(std::string_view text, Dimension dimension);
+
+/// What makes an SI value of a number of some unit.
+struct Scale {
+    double factor;         // SI value of one unit, times the divisor
+    double divisor = 1.0;  // exact where the factor would not be: 100nm is 1e-7 and not its neighbour
+    double offset = 0.0;   // SI value of zero units
+
+    [[nodiscard]] double si(double number) const { return number * factor / divisor + offset; }
+};
+
+/// The scale of a unit as people write it; nothing if it is none of that dimension. A plain number has no unit, a fraction need not
+/// have one.
+std::optional<Scale> scale_of(std::string_view unit, Dimension dimension);
+
+/// True for the name of a unit, whatever it measures.
+bool is_unit(std::string_view text);
 
 /// The units of a dimension, for help texts: "m, mm, um, nm".
 std::string known_units(Dimension dimension);

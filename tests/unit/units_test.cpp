@@ -32,6 +32,9 @@ std::string refusal(const std::string& text, Dimension dimension) {
 TEST_CASE("every unit has its SI value, to the last bit") {
     const Case cases[] = {
         {Dimension::none, "0.5", 0.5},
+        {Dimension::fraction, "0.79", 0.79},
+        {Dimension::fraction, "79%", 0.79},
+        {Dimension::fraction, "2percent", 0.02},
         {Dimension::length, "2m", 2.0},
         {Dimension::length, "5cm", 0.05},
         {Dimension::length, "3mm", 3e-3},
@@ -61,6 +64,8 @@ TEST_CASE("every unit has its SI value, to the last bit") {
         {Dimension::pressure, "3kPa", 3e3},
         {Dimension::pressure, "150MPa", 150e6},
         {Dimension::pressure, "400GPa", 400e9},
+        {Dimension::pressure, "2N/mm2", 2e6},
+        {Dimension::pressure, "2kN/mm2", 2e9},
         {Dimension::force, "2N", 2.0},
         {Dimension::force, "2kN", 2e3},
         {Dimension::force, "3mN", 3e-3},
@@ -137,8 +142,8 @@ TEST_CASE("a missing unit is refused, with the units that are known") {
 TEST_CASE("a unit of another kind or another case is refused") {
     const std::string wrong = " has no unit of the right kind; known here: ";
     CHECK(refusal("50s", Dimension::length) == "'50s'" + wrong + "m, cm, mm, um, nm");
-    CHECK(refusal("3mPa", Dimension::pressure) == "'3mPa'" + wrong + "Pa, kPa, MPa, GPa");
-    CHECK(refusal("3mpa", Dimension::pressure) == "'3mpa'" + wrong + "Pa, kPa, MPa, GPa");
+    CHECK(refusal("3mPa", Dimension::pressure) == "'3mPa'" + wrong + "Pa, kPa, MPa, GPa, N/mm2, kN/mm2");
+    CHECK(refusal("3mpa", Dimension::pressure) == "'3mpa'" + wrong + "Pa, kPa, MPa, GPa, N/mm2, kN/mm2");
     CHECK(refusal("50NM", Dimension::length) == "'50NM'" + wrong + "m, cm, mm, um, nm");
     CHECK(refusal("300k", Dimension::temperature) == "'300k'" + wrong + "K, C");
     CHECK(refusal("300c", Dimension::temperature) == "'300c'" + wrong + "K, C");
