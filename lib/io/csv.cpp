@@ -79,6 +79,8 @@ bool has_name(const std::string& heading, std::string_view name) {
     return heading.starts_with(name) && (heading.size() == name.size() || !is_letter(heading[name.size()]));
 }
 
+}  // namespace
+
 std::string bytes_of(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw Error(file + ": cannot be opened");
@@ -86,8 +88,6 @@ std::string bytes_of(const std::string& file) {
     if (stream.bad()) throw Error(file + ": cannot be read");
     return bytes;
 }
-
-}  // namespace
 
 CsvTable::CsvTable(const std::string& file) : CsvTable(file, bytes_of(file)) {}
 
@@ -97,6 +97,13 @@ CsvTable::CsvTable(std::string name, std::string bytes)
       table_(table_in(*text_, file_)) {
     for (std::size_t column = 0; column < table_.headings.size(); ++column)
         headings_.push_back(heading_from(table_.headings[column], table_.units.empty() ? "" : table_.units[column]));
+}
+
+CsvTable::CsvTable(std::string name, std::string bytes, const std::vector<std::string>& headings)
+    : file_(std::move(name)),
+      text_(std::make_shared<const std::string>(utf8_text(std::move(bytes), file_))),
+      table_(table_in(*text_, file_, headings.size())) {
+    for (const std::string& heading : headings) headings_.push_back(heading_from(heading, ""));
 }
 
 CsvTable::Heading CsvTable::heading_from(std::string_view text, std::string_view unit_below) {
@@ -118,7 +125,6 @@ std::string CsvTable::heading(std::size_t column) const { return headings_[colum
 
 std::string CsvTable::place(std::size_t row) const { return file_ + ", line " + std::to_string(table_.lines[row]); }
 
-/// "'Time (s)', 'Load (N)'", the end of a long list left out.
 std::string CsvTable::headings_text() const {
     std::string list;
     for (std::size_t column = 0; column < headings_.size() && column < max_headings; ++column)
@@ -132,7 +138,7 @@ std::vector<std::size_t> CsvTable::chosen(const std::string& heading) const {
     std::vector<std::size_t> same, alike;
     for (std::size_t column = 0; column < headings_.size(); ++column) {
         const Heading& each = headings_[column];
-        if (each.text == heading || table_.headings[column] == heading) same.push_back(column);
+        if (each.text == heading || (column < table_.headings.size() && table_.headings[column] == heading)) same.push_back(column);
         if (each.name == given.name && (given.unit.empty() || given.unit == each.unit)) alike.push_back(column);
     }
     return same.empty() ? alike : same;
@@ -171,9 +177,9 @@ std::size_t CsvTable::get(const ColumnNames& names, Dimension dimension, const C
     return *found;
 }
 
-std::vector<double> CsvTable::values(std::size_t column, Dimension dimension) const {
+std::vector<double> CsvTable::values(std::size_t column, Dimension dimension, const std::string& unit) const {
     const Heading& heading = headings_[column];
-    const auto scale = scale_of(heading.unit, dimension);
+    const auto scale = scale_of(heading.unit.empty() ? unit : heading.unit, dimension);
     if (!scale) {
         const std::string known = known_units(dimension);
         throw Error(file_ + ": column " + excerpt(heading.text) + " " +

@@ -32,6 +32,9 @@ class CsvTable {
     /// The same of the bytes of a file.
     CsvTable(std::string name, std::string bytes);
 
+    /// The same with headings for its columns, in their order, whether or not it has some of its own.
+    CsvTable(std::string name, std::string bytes, const std::vector<std::string>& headings);
+
     /// The column whose heading has one of the names, or that was chosen. Where several have, the one whose unit fits. Nothing if
     /// there is none. Throws Error for several.
     std::optional<std::size_t> find(const ColumnNames& names, Dimension dimension, const ColumnChoice& choice = {}) const;
@@ -41,7 +44,8 @@ class CsvTable {
 
     /// The values of a column in SI units. Throws Error naming file and line for an empty cell, what is no number, and a unit that
     /// is missing or of another kind.
-    std::vector<double> values(std::size_t column, Dimension dimension) const;
+    /// unit: of a heading that has none.
+    std::vector<double> values(std::size_t column, Dimension dimension, const std::string& unit = "") const;
 
     /// Both in one.
     std::optional<std::vector<double>> column(const ColumnNames& names, Dimension dimension) const;
@@ -50,6 +54,17 @@ class CsvTable {
     /// The heading of a column with its unit, as "Load (N)".
     std::string heading(std::size_t column) const;
 
+    /// A cell as it stands there.
+    std::string_view cell(std::size_t row, std::size_t column) const { return table_.cells[row * headings_.size() + column]; }
+
+    /// The name of a column in lower case, without its unit; the unit, empty where there is none.
+    const std::string& name(std::size_t column) const { return headings_[column].name; }
+    const std::string& unit(std::size_t column) const { return headings_[column].unit; }
+
+    /// "'Time (s)', 'Load (N)'", the end of a long list left out.
+    std::string headings_text() const;
+
+    std::size_t columns() const { return headings_.size(); }
     std::size_t rows() const { return table_.lines.size(); }
 
     /// "bar7.csv, line 12" of the row 0, 1, …
@@ -64,13 +79,15 @@ class CsvTable {
 
     static Heading heading_from(std::string_view text, std::string_view unit_below);
     std::vector<std::size_t> chosen(const std::string& heading) const;
-    std::string headings_text() const;
 
     std::string file_;
     std::shared_ptr<const std::string> text_;  // that the cells are parts of
     TextTable table_;
     std::vector<Heading> headings_;
 };
+
+/// The bytes of a file. Throws Error that names it.
+std::string bytes_of(const std::string& file);
 
 /// True for a file that holds such a table by its name: .csv, or .txt, .tsv, .dat and .asc unless it begins as JSON does; perhaps
 /// with .gz behind it.

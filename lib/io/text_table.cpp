@@ -62,6 +62,10 @@ std::optional<std::size_t> closing_quote(std::string_view line, std::size_t star
     return std::nullopt;
 }
 
+bool in_brackets(std::string_view cell) {
+    return (cell.starts_with('(') && cell.ends_with(')')) || (cell.starts_with('[') && cell.ends_with(']'));
+}
+
 void add_cells(std::vector<std::string_view>& cells, std::string_view line, char separator) {
     for (std::size_t at = 0;; ++at) {
         const std::size_t start = std::min(line.find_first_not_of(separator == '\t' ? " " : " \t", at), line.size());
@@ -108,6 +112,21 @@ bool has_form_of_thousands(std::string_view cell) {
            cell.find_first_not_of("0123456789,") == std::string_view::npos;
 }
 
+/// Cells that blanks and tabs separate; "x (m)" is one, and so is "# x".
+void add_blank_separated(std::vector<std::string_view>& cells, std::string_view line) {
+    const std::size_t first = cells.size();
+    for (std::size_t at = line.find_first_not_of(" \t"); at < line.size(); at = line.find_first_not_of(" \t", at)) {
+        const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+        const std::string_view cell = line.substr(at, end - at);
+        if (cells.size() > first && (in_brackets(cell) || cells.back() == "#"))
+            cells.back() = {cells.back().data(), static_cast<std::size_t>(cell.data() + cell.size() - cells.back().data())};
+        else
+            cells.push_back(cell);
+        at = end;
+    }
+    if (cells.size() == first) cells.emplace_back();
+}
+
 struct Row {
     std::size_t line, first, count;  // count: of cells
     std::size_t filled;              // count without the empty cells at the end
@@ -127,7 +146,10 @@ Grid split(const std::vector<Line>& lines, char separator) {
     Grid grid;
     for (const Line& line : lines) {
         Row row{line.number, grid.cells.size(), 0, 0, "", false};
-        add_cells(grid.cells, line.text, separator);
+        if (separator == ' ')
+            add_blank_separated(grid.cells, line.text);
+        else
+            add_cells(grid.cells, line.text, separator);
         row.count = grid.cells.size() - row.first;
         for (std::size_t column = 0; column < row.count; ++column) {
             if (!grid.cell(row, column).empty()) row.filled = column + 1;
@@ -153,20 +175,17 @@ std::string common_numbers(const Grid& grid) {
     return found == counts.end() ? "" : found->first;
 }
 
-bool in_brackets(std::string_view cell) {
-    return (cell.starts_with('(') && cell.ends_with(')')) || (cell.starts_with('[') && cell.ends_with(']'));
-}
-
 /// "(mm)" or "mm" is mm.
 std::string_view without_brackets(std::string_view cell) {
     return in_brackets(cell) ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
-/// A row with a unit in it, known or in brackets.
-bool is_units_row(const Grid& grid, const Row& row) {
+/// Cells of a row with a unit, known or in brackets; names such as d and T may look like one.
+std::size_t units_in(const Grid& grid, const Row& row) {
+    std::size_t count = 0;
     for (std::size_t column = 0; column < row.filled; ++column)
-        if (const std::string_view cell = grid.cell(row, column); in_brackets(cell) || is_unit(cell)) return true;
-    return false;
+        if (const std::string_view cell = grid.cell(row, column); in_brackets(cell) || is_unit(cell)) ++count;
+    return count;
 }
 
 /// The rows of a table in a grid.
@@ -177,10 +196,17 @@ struct Layout {
     const Row* heading = nullptr;       // nothing: no row of words stands above its rows
     const Row* units = nullptr;
     std::vector<const Row*> body;
+    std::size_t width = 0;              // number of columns
 };
 
+/// True where all rows have the same number of cells: only then do blanks separate cells, and not words of one.
+bool is_regular(const Layout& layout) {
+    return !layout.body.empty() && layout.width > 1 &&
+           std::ranges::all_of(layout.body, [&](const Row* row) { return row->count == layout.width; });
+}
+
 Layout layout_of(const std::vector<Line>& lines, char separator) {
-    Layout layout{separator, split(lines, separator), "", nullptr, nullptr, {}};
+    Layout layout{separator, split(lines, separator), "", nullptr, nullptr, {}, 0};
     const std::vector<Row>& rows = layout.grid.rows;
     layout.numbers = common_numbers(layout.grid);
     if (layout.numbers.empty()) return layout;
@@ -196,14 +222,39 @@ Layout layout_of(const std::vector<Line>& lines, char separator) {
     if (!all_remarks) std::erase_if(words, [](const Row* row) { return row->remark; });
     if (words.empty()) return layout;
     layout.heading = words.back();
-    if (words.size() > 1 && is_units_row(layout.grid, *words.back()) && !is_units_row(layout.grid, *words[words.size() - 2])) {
+    if (words.size() > 1 && units_in(layout.grid, *words.back()) > units_in(layout.grid, *words[words.size() - 2])) {
         layout.units = words.back();
         layout.heading = words[words.size() - 2];
     }
     const std::size_t last_line = layout.units ? layout.units->line : layout.heading->line;
     for (const Row& row : rows)
         if (row.line > last_line && !row.remark) layout.body.push_back(&row);
+    layout.width = layout.heading->filled;
     return layout;
+}
+
+/// The rows of numbers of a text whose columns have been named.
+Layout layout_without_heading(const std::vector<Line>& lines, char separator) {
+    Layout layout{separator, split(lines, separator), "", nullptr, nullptr, {}, 0};
+    layout.numbers = common_numbers(layout.grid);
+    for (const Row& row : layout.grid.rows)
+        if (!row.remark && !layout.numbers.empty() && (!layout.body.empty() || row.numbers == layout.numbers))
+            layout.body.push_back(&row);
+    if (!layout.body.empty()) layout.width = layout.body.front()->filled;
+    return layout;
+}
+
+/// The same with the separator that gives so many columns.
+Layout layout_of_columns(const std::vector<Line>& lines, std::size_t columns, const std::string& name) {
+    std::optional<Layout> widest;
+    for (const char separator : {';', '\t', ',', ' '}) {
+        Layout layout = layout_without_heading(lines, separator);
+        if (layout.width == columns && (separator != ' ' || is_regular(layout) || columns == 1)) return layout;
+        if (!widest || layout.width > widest->width) widest = std::move(layout);
+    }
+    if (widest->body.empty()) throw Error(name + ": has no rows of numbers");
+    throw Error(name + ", line " + std::to_string(widest->body.front()->line) + ": has " + std::to_string(widest->width) +
+                (widest->width == 1 ? " column" : " columns") + ", and " + std::to_string(columns) + " are named");
 }
 
 /// The character of a first line "sep=;", as spreadsheets write it.
@@ -218,7 +269,7 @@ std::optional<char> stated_separator(const std::vector<Line>& lines) {
 
 /// The layout with the separator that gives a table of several columns, or of one.
 Layout found_layout(std::vector<Line> lines, const std::string& name) {
-    std::string separators = ";\t,";
+    std::string separators = ";\t, ";
     if (const auto stated = stated_separator(lines)) {
         separators = *stated;
         lines.erase(lines.begin());
@@ -226,6 +277,7 @@ Layout found_layout(std::vector<Line> lines, const std::string& name) {
     std::optional<Layout> found;
     for (const char separator : separators) {
         Layout layout = layout_of(lines, separator);
+        if (separator == ' ' && !is_regular(layout)) continue;
         if (layout.heading && layout.heading->filled > 1) return layout;
         if (layout.heading || !found) found = std::move(layout);
     }
@@ -242,7 +294,7 @@ Layout found_layout(std::vector<Line> lines, const std::string& name) {
 
 /// Throws Error for rows that do not fit the heading, and words among numbers.
 void check_rows(const Layout& layout, const std::string& name) {
-    const std::size_t width = layout.heading->filled;
+    const std::size_t width = layout.width;
     for (const Row* row : layout.body) {
         const std::string place = name + ", line " + std::to_string(row->line);
         if (row->count < width || row->filled > width) {
@@ -285,19 +337,19 @@ bool has_decimal_commas(const Layout& layout, const std::string& name) {
 
 }  // namespace
 
-TextTable table_in(std::string_view text, const std::string& name) {
-    const Layout layout = found_layout(lines_of(text), name);
+TextTable table_in(std::string_view text, const std::string& name, std::size_t columns) {
+    const Layout layout = columns > 0 ? layout_of_columns(lines_of(text), columns, name) : found_layout(lines_of(text), name);
     check_rows(layout, name);
     TextTable table;
     table.decimal_comma = has_decimal_commas(layout, name);
-    const std::size_t width = layout.heading->filled;
+    const std::size_t width = layout.width;
     const auto row_of = [&](const Row& row) {
         std::vector<std::string_view> cells(width);
         for (std::size_t column = 0; column < std::min(width, row.count); ++column) cells[column] = layout.grid.cell(row, column);
         if (row.remark) cells[0] = trimmed(cells[0].substr(cells[0].find_first_not_of('#')));
         return cells;
     };
-    table.headings = row_of(*layout.heading);
+    if (layout.heading) table.headings = row_of(*layout.heading);
     if (layout.units) {
         table.units = row_of(*layout.units);
         std::ranges::transform(table.units, table.units.begin(), without_brackets);

@@ -73,7 +73,7 @@ END
     assert_output --partial "word.csv, line 4: 'much' is not a number"
     sed '4s/,.*//' bar.csv >short.csv
     run -1 "$ANALYZE" modulus "${SIZE[@]}" short.csv
-    assert_output --partial "short.csv, line 4: has 1 columns, the heading has 2"
+    assert_output --partial "short.csv, line 4: has 1 column, the heading has 2"
     run -1 "$ANALYZE" modulus "${SIZE[@]}" none.csv
     assert_output --partial "none.csv: cannot be opened"
     run -2 "$ANALYZE" modulus --span 30 bar.csv

@@ -190,3 +190,28 @@ TEST_CASE("csv: a name tells whether a file is such a table") {
     CHECK(io::is_csv("A.CSV"));
     CHECK_FALSE(io::is_csv("a.csv.json"));
 }
+
+TEST_CASE("csv: blanks separate cells where every row then has as many, with the unit in the cell of its name") {
+    check_column("# force (N)   deflection (m)\n 1.5   2\n  -3e2 4\n", "force", Dimension::force, {1.5, -300.0});
+    check_column("deflection (m) force (N)\n1,5 2,25\n2,5 3,5\n", "force", Dimension::force, {2.25, 3.5});
+    check_refused("deflection (m) force (N)\n1 2\n3\n", "bar.csv");
+}
+
+TEST_CASE("csv: columns may be named by the user, in files with and without a heading") {
+    for (const char* text :
+         {"1.5 7 2\n3.5 8 4\n", "1.5;7;2\n3.5;8;4\n", "a,b,c\n1.5,7,2\n3.5,8,4\n", "# three\n\n1,5\t7\t2\n3,5\t8\t4\n"}) {
+        CAPTURE(text);
+        const CsvTable table("bar.csv", text, {"force (N)", "-", "way"});
+        CHECK(table.required({"force"}, Dimension::force) == std::vector{1.5, 3.5});
+        CHECK(table.values(table.get({"way"}, Dimension::length), Dimension::length, "m") == std::vector{2.0, 4.0});
+    }
+    CHECK_THROWS_WITH_AS(CsvTable("bar.csv", "1.5 7\n3.5 8\n", {"a", "b", "c"}), "bar.csv, line 1: has 2 columns, and 3 are named",
+                         Error);
+    CHECK_THROWS_WITH_AS(CsvTable("bar.csv", "1.5 7\n3.5 8 9\n", {"a", "b"}), doctest::Contains("line"), Error);
+}
+
+TEST_CASE("csv: names that are units too do not make a row of units of the row of names") {
+    const CsvTable table("bar.csv", "d;h;T\nnm;nm;C\n1;2;3\n");
+    CHECK(table.values(table.get({"d$"}, Dimension::length), Dimension::length)[0] == relative(1e-9, 1e-14));
+    CHECK(table.values(table.get({"t$"}, Dimension::temperature), Dimension::temperature)[0] == relative(276.15, 1e-14));
+}
