@@ -27,7 +27,7 @@ int sinter_states(int argc, char** argv) {
 
     const auto entry = [&](const Json& summary) { return cli::history_entry("sinter", app, summary); };
     io::CheckpointFile checkpoint(options.checkpoint, options.resume, options.checkpoint_every,
-                                  entry(Json::object())["arguments"]);
+                                  options.bearing(entry(Json::object())["arguments"]));
     const std::optional<io::Checkpoint> earlier = checkpoint.read();
     if (earlier && earlier->run.finished) return sinter::finish(common.output, options.history, earlier->run, checkpoint);
 

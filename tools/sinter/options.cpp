@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
 
+#include "io/csv.h"
 #include "io/json.h"
 #include "tools/common/quantity_options.h"
 #include "io/schedule_text.h"
@@ -26,6 +28,7 @@ constexpr const char* footer =
     "Examples:\n"
     "  sinter green -n 6000 | sinter --temperature 1200C --to-density 0.67,0.88 -o fired.kiln\n"
     "  sinter --schedule \"25C 10K/min 1150C 10min 20K/min 25C\" -o fired.kiln green.kiln\n"
+    "  sinter --schedule furnace.csv --every 30min -o fired.kiln green.kiln\n"
     "  sinter --temperature 1200C --at-time 1min,5min green.kiln | analyze density --table\n"
     "  sinter --temperature 1200C --fix xy --report viscosity --to-density 0.7 -o film.kiln green.kiln\n"
     "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 1min -o forged.kiln green.kiln\n"
@@ -64,11 +67,14 @@ void Options::add_programme(CLI::App& app) {
                  "Also write a state after each such interval from the state's time on, until the last density or time");
     auto* hold =
         add_quantity(app, "--temperature", temperature, Dimension::temperature, "Temperature of a hold without end; RT is 25 C");
-    app.add_option(
-           "--schedule", schedule,
-           "Temperatures, heating rates and hold times, such as \"RT 10C/min 1200C 1h 10C/min RT\", from the state's time on")
+    app.add_option("--schedule", schedule,
+                   "Temperatures, heating rates and hold times, such as \"RT 10C/min 1200C 1h 10C/min RT\", or a table NAME.csv "
+                   "of time and "
+                   "temperature as furnaces log it, from the state's time on")
         ->type_name("WORDS")
         ->excludes(hold);
+    app.add_option("--time-column", log.time, "Heading of the time in the table of --schedule")->type_name("HEADING");
+    app.add_option("--temperature-column", log.temperature, "Heading of the temperature there")->type_name("HEADING");
     add_choice(app, "--report", report, {{"viscosity", Report::viscosity}},
                "viscosity: write with each state its sintering stress, bulk and shear viscosity, by imposed strain rates")
         ->default_str("none");
@@ -97,7 +103,7 @@ void Options::add_method(CLI::App& app) {
                "Constant of the tangential viscosity eta pi a^2 (2 R*)^2/(2 beta Delta); a^2 = 4 R* h");
 }
 
-void Options::check(const CLI::App& app, const std::string& output) const {
+void Options::check(const CLI::App& app, const std::string& output) {
     if (schedule.empty() && temperature == 0.0) throw CLI::ValidationError("one of --temperature and --schedule is required");
     if (densities.empty() && times.empty() && schedule.empty())
         throw CLI::ValidationError("one of --to-density, --at-time and --schedule is required");
@@ -116,12 +122,17 @@ void Options::check(const CLI::App& app, const std::string& output) const {
     if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint requires an output file: -o FILE");
     if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume requires --checkpoint FILE");
     refuse_unused(app);
-    if (!schedule.empty()) cli::parsed("--schedule", [this] { return io::parse_schedule(schedule); });
+    if (io::is_csv(schedule))
+        programme_ = io::read_schedule(schedule, log);
+    else if (!schedule.empty())
+        programme_ = cli::parsed("--schedule", [this] { return io::parse_schedule(schedule); });
 }
 
 void Options::refuse_unused(const CLI::App& app) const {
     if (checkpoint.empty() && app.count("--checkpoint-every") > 0)
         throw CLI::ValidationError("--checkpoint-every requires --checkpoint FILE");
+    for (const char* name : {"--time-column", "--temperature-column"})
+        if (!io::is_csv(schedule) && app.count(name) > 0) throw CLI::ValidationError(name, "needs --schedule NAME.csv");
     const bool with_inertia = method == SinterMethod::explicit_steps;
     if (!with_inertia && app.count("--mass-scaling") > 0)
         throw CLI::ValidationError("--mass-scaling", "needs --method explicit");
@@ -129,9 +140,14 @@ void Options::refuse_unused(const CLI::App& app) const {
         if (with_inertia && app.count(name) > 0) throw CLI::ValidationError(name, "has no meaning with --method explicit");
 }
 
+Json Options::bearing(Json arguments) const {
+    if (io::is_csv(schedule)) arguments.push_back(std::to_string(std::hash<std::string>{}(io::bytes_of(schedule))));
+    return arguments;
+}
+
 sintering::SinteringSettings Options::settings(double start) const {
     sintering::SinteringSettings settings;
-    settings.schedule = schedule.empty() ? physics::Schedule::hold(temperature) : io::parse_schedule(schedule).from(start);
+    settings.schedule = programme_ ? programme_->from(start) : physics::Schedule::hold(temperature);
     settings.constants = constants;
     settings.faces = faces;
     for (const char axis : fixed) settings.fixed[static_cast<std::size_t>(axis - 'x')] = true;

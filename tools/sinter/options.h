@@ -1,9 +1,12 @@
 // options.h: the options of `sinter`, with their defaults, units and checks.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "io/furnace_log.h"
+#include "io/json_forward.h"
 #include "sintering/sintering.h"
 
 namespace CLI {
@@ -21,7 +24,8 @@ struct Options {
     std::vector<double> times;      // s, required states
     double every = 0.0;             // s, between states; 0: none
     double temperature = 0.0;       // K, of a hold; 0: a schedule is given
-    std::string schedule;
+    std::string schedule;           // words, or a furnace's log by its name
+    io::LogColumns log;             // which of its columns
     sintering::Faces faces = sintering::Faces::as_given;
     std::string fixed;              // axes
     std::vector<double> pressure;   // Pa, one or three
@@ -39,7 +43,11 @@ struct Options {
     void add_to(CLI::App& app);
 
     /// Checks options against each other, once they are parsed; throws CLI::ValidationError.
-    void check(const CLI::App& app, const std::string& output) const;
+    /// Reads the schedule; throws Error for a log that cannot be read.
+    void check(const CLI::App& app, const std::string& output);
+
+    /// Arguments that bear on the result, from those of the command line: what a log holds is one.
+    Json bearing(Json arguments) const;
 
     /// Settings of the method for a state at the time `start` (s), where the schedule begins; --at-time is on its own clock.
     sintering::SinteringSettings settings(double start) const;
@@ -52,6 +60,8 @@ struct Options {
     void add_boundaries(CLI::App& app);
     void add_method(CLI::App& app);
     void refuse_unused(const CLI::App& app) const;
+
+    std::optional<physics::Schedule> programme_;  // of --schedule
 };
 
 }  // namespace kiln::sinter
