@@ -11,6 +11,7 @@ namespace kiln::packing {
 namespace {
 
 constexpr double z_of_tenth = 1.2815515655446004;  // standard deviations from the median to D10 and D90 of a normal distribution
+constexpr double min_diameter = 1e-15, max_diameter = 1e6;  // m; third powers beyond them, and their sums, may be no numbers
 constexpr int steps_between = 32;                  // points of a smooth curve between two percentiles
 
 int power_of(Weighting weighting) { return weighting == Weighting::volume ? 3 : 0; }
@@ -33,11 +34,14 @@ double below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
 }  // namespace
 
+bool is_diameter(double diameter) { return diameter >= min_diameter && diameter <= max_diameter; }
+
 SizeClasses::SizeClasses(const std::vector<SizeClass>& measured, Weighting weighting) : power_(power_of(weighting)) {
     double total = 0.0, before = 0.0;
     for (SizeClass one : measured) {
         if (!(one.lower > 0.0) || !(one.upper >= one.lower) || !(one.lower >= before))
             throw Error("the diameters of a size distribution are positive and ascend");
+        if (!is_diameter(one.lower) || !is_diameter(one.upper)) throw Error("a diameter of the size distribution is out of range");
         if (!(one.share >= 0.0)) throw Error("the shares of a size distribution are not negative");
         before = one.upper;
         if (one.share == 0.0) continue;

@@ -10,6 +10,9 @@ namespace kiln::packing {
 /// What shares of a distribution count: particles, or their volume (of one material the same as mass).
 enum class Weighting { number, volume };
 
+/// Whether a length, m, is one that a particle may have: from 1e-15 to 1e6.
+bool is_diameter(double diameter);
+
 /// Particles between two diameters, or of one where both are equal.
 struct SizeClass {
     double lower, upper;  // m

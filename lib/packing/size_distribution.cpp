@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <utility>
 
 #include "analysis/histogram.h"
 #include "core/types.h"
 #include "io/quantity.h"
+#include "packing/size_table.h"
 
 namespace kiln::packing {
 
@@ -82,24 +82,6 @@ SizeClasses parse_percentiles(const std::vector<std::string>& parts, Weighting w
     return {classes_between(through_percentiles(d10, d50, d90, smallest, largest)), weighting};
 }
 
-DiameterList read_list(const std::string& name) {
-    std::ifstream file(name);
-    DiameterList list;
-    std::string line;
-    for (std::size_t number = 1; std::getline(file, line); ++number) {
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        if (line.find_first_not_of(" \t") == std::string::npos) continue;
-        try {
-            list.diameters.push_back(positive_length(line));
-        } catch (const TextError& error) {
-            throw Error(name + ", line " + std::to_string(number) + ": " + error.what());
-        }
-    }
-    if (!file.eof()) throw Error(name + ": the list of diameters cannot be read");
-    if (list.diameters.empty()) throw Error(name + ": the list of diameters is empty");
-    return list;
-}
-
 double lognormal_diameter(const Lognormal& lognormal, Random& random) {
     for (;;) {
         const double diameter = lognormal.median * std::pow(lognormal.deviation, random.normal());
@@ -142,8 +124,9 @@ double quantile_of(const std::vector<double>& diameters, std::vector<double> num
 
 }  // namespace
 
-SizeDistribution parse_distribution(const std::string& text, double diameter, std::optional<Weighting> weighting) {
-    if (text.starts_with("file:")) return read_list(text.substr(5));
+SizeDistribution parse_distribution(const std::string& text, double diameter, std::optional<Weighting> weighting,
+                                    std::optional<Shares> shares, const FileManner& manner) {
+    if (text.starts_with("file:")) return read_sizes(text.substr(5), weighting, shares, manner);
     const std::vector<std::string> parts = split(text);
     const Weighting by = weighting.value_or(parts[0] == "percentiles" ? Weighting::volume : Weighting::number);
     if (parts[0] == "monosize" && parts.size() == 1) return Monosize{diameter};

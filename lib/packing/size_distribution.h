@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "packing/file_manner.h"
 #include "packing/random.h"
 #include "packing/size_classes.h"
 
@@ -32,10 +33,11 @@ struct DiameterList {
 
 using SizeDistribution = std::variant<Monosize, Lognormal, Bimodal, DiameterList, SizeClasses>;
 
-/// What a text such as "lognormal:100nm:1.4:50nm:200nm" says, of number or volume; file:NAME is read by read_sizes(). diameter: m,
-/// for "monosize". weighting: where none is given, number, but volume for percentiles.
+/// What a text such as "lognormal:100nm:1.4:50nm:200nm" says, of number or volume. diameter: m, for "monosize". weighting: where
+/// none is given, number, but volume for percentiles, and what a file says. shares, manner: for file:NAME, see size_table.h.
 /// Throws TextError for a text that is none of the known ones, Error for a file that cannot be read.
-SizeDistribution parse_distribution(const std::string& text, double diameter, std::optional<Weighting> weighting = {});
+SizeDistribution parse_distribution(const std::string& text, double diameter, std::optional<Weighting> weighting = {},
+                                    std::optional<Shares> shares = {}, const FileManner& manner = {});
 
 /// Radii (m) of the given number of particles. A list gives each of its diameters as often as it can, and what then is left to draw
 /// at random, none twice.

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/state.h"
+#include "packing/file_manner.h"
 
 namespace kiln::packing {
 
@@ -13,6 +15,11 @@ struct SphereList {
     std::vector<Vec3> position;  // m
     std::vector<double> radius;  // m
 };
+
+/// The spheres of a table (io/csv.h): x, y, z and a radius or diameter, other columns are not read; also the text that Yade writes,
+/// "#format x_y_z_r". Throws Error that names file and line: columns that are missing or not clear, lengths without a unit, radii
+/// not above zero, several materials.
+SphereList read_spheres(const std::string& file, const FileManner& manner);
 
 struct SphereOptions {
     std::optional<Vec3> lengths;  // m, edges of the box; none: as long as the spheres reach

@@ -113,7 +113,7 @@ TEST_CASE("green: a list of diameters gives each as often as it can, and sets th
     CHECK((close(drawn[2], 100e-9, 1e-14) || close(drawn[2], 200e-9, 1e-14)));
     CHECK(std::get<DiameterList>(parse_distribution(text, 0.0)).diameters.size() == 2);
     std::filesystem::remove(file);
-    CHECK_THROWS_WITH_AS(diameters(text, 3), doctest::Contains("cannot be read"), Error);
+    CHECK_THROWS_WITH_AS(diameters(text, 3), doctest::Contains("cannot be opened"), Error);
 }
 
 TEST_CASE("green: relative density and box edges are exact") {

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "analysis/histogram.h"
 #include "core/types.h"
 #include "packing/size_distribution.h"
+#include "packing/size_table.h"
 #include "packing/sphere_list.h"
 #include "tests/physics/relative.h"
 
@@ -204,15 +208,178 @@ TEST_CASE("spheres: a periodic box closes over its faces, and a swell brings sph
     options.swell = 0.0;
     options.origin = Vec3(-1.0, -0.5, -0.5);
     CHECK_THROWS_WITH_AS(body_of(touching, options),
-                         "the centre of sphere 1 has x = 1.5 m, and the box reaches from -1 m to 1 m", Error);
+                         "the centre of sphere 1 has x = 1.5 m, counted from 0, and the box reaches from -1 m to 1 m", Error);
     options.lengths.reset();
     CHECK_THROWS_WITH_AS(body_of(touching, options), doctest::Contains("periodic along x, and its length is not given"), Error);
 }
 
 TEST_CASE("spheres: two at one place, and one inside another, are no body") {
-    CHECK_THROWS_WITH_AS(body_of({{{0, 0, 0}, {3, 0, 0}, {3, 0, 0}}, {1, 1, 1}}, {}), "sphere 1 and sphere 2 lie at one place",
-                         Error);
-    CHECK_THROWS_WITH_AS(body_of({{{0, 0, 0}, {0.5, 0, 0}}, {1, 0.4}}, {}), "sphere 0 and sphere 1 lie one inside the other",
-                         Error);
+    CHECK_THROWS_WITH_AS(body_of({{{0, 0, 0}, {3, 0, 0}, {3, 0, 0}}, {1, 1, 1}}, {}),
+                         "sphere 1 and sphere 2 lie at one place, counted from 0", Error);
+    CHECK_THROWS_WITH_AS(body_of({{{0, 0, 0}, {0.5, 0, 0}}, {1, 0.4}}, {}),
+                         "sphere 0 and sphere 1 lie one inside the other, counted from 0", Error);
     CHECK_THROWS_AS(body_of({}, {}), Error);
+}
+
+namespace {
+
+struct Asked {
+    std::optional<Weighting> weighting = {};
+    std::optional<Shares> shares = {};
+    FileManner manner = {};
+};
+
+SizeDistribution sizes_of(const std::string& text, const Asked& asked = {}) {
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "kiln_sizes_test.csv";
+    std::ofstream(file) << text;
+    return read_sizes(file.string(), asked.weighting, asked.shares, asked.manner);
+}
+
+std::string size_refusal(const std::string& text, const Asked& asked = {}) {
+    try {
+        sizes_of(text, asked);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+SphereList spheres_of(const std::string& text, const FileManner& manner = {}) {
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "kiln_spheres_test.txt";
+    std::ofstream(file) << text;
+    return read_spheres(file.string(), manner);
+}
+
+}  // namespace
+
+TEST_CASE("size tables: the same three classes by volume in every manner") {
+    const Asked plain{.manner = {{"size", "-", "volume"}, "um"}};
+    const std::pair<const char*, Asked> cases[] = {
+        {"Size (um),Volume (%)\n0.1,5\n0.2,30\n0.5,65\n", {}},
+        {"\xef\xbb\xbf# a remark\r\nSize (um),Volume (%)\r\n0.1,5\r\n0.2,30\r\n0.5,65\r\n", {}},
+        {"Probe 7;Nr 3\n\nDurchmesser;Volumen-Vol\n\u00b5m;%\n0,10;5,0\n0,20;30,0\n0,50;65,0\n", {}},
+        {"Diameter [nm]\tmass fraction\n100\t0.05\n200\t0.30\n500\t0.65\n", {}},
+        {"Size (um),Volume (%)\n0.5,65\n0.2,30\n0.1,5\n", {}},
+        {"Size (um),share (%)\n0.1,5\n0.2,30\n0.5,65\n", {.weighting = by_volume}},
+        {"0.1 1 5\n0.2 2 30\n0.5 3 65\n", plain},
+        {"Size (um),q (%),Q (%)\n0.1,5,5\n0.2,30,35\n0.5,65,100\n", {.manner = {{"size (um)", "volume (%)", "-"}, ""}}},
+        {"Size (um),Number (%),Volume (%)\n0.1,90,5\n0.2,9,30\n0.5,1,65\n", {.weighting = by_volume}},
+    };
+    const SizeClasses expected({{1e-7, 1e-7, 5}, {2e-7, 2e-7, 30}, {5e-7, 5e-7, 65}}, by_volume);
+    for (const auto& [text, asked] : cases) {
+        CAPTURE(text);
+        const SizeDistribution found = sizes_of(text, asked);
+        CHECK(std::get<SizeClasses>(found).mean() == relative(expected.mean(), 1e-13));
+        for (const double fraction : {0.04, 0.06, 0.34, 0.36})
+            CHECK(size_quantile(found, fraction, by_volume) == relative(expected.quantile(fraction, by_volume), 1e-13));
+    }
+}
+
+TEST_CASE("size tables: the same cumulative curve in every manner") {
+    const std::pair<const char*, Asked> cases[] = {
+        {"Size (um),Cum. < Volume (%)\n0.1,0\n0.2,30\n0.5,80\n1,100\n", {}},
+        {"Size (um),Volume (%)\n0.1,0\n0.2,30\n0.5,80\n1,100\n", {}},
+        {"Size (um),Volume\n0.1,0\n0.2,0.3\n0.5,0.8\n1,1\n", {}},
+        {"Sieve (um),Oversize mass (%)\n1,0\n0.5,20\n0.2,70\n0.1,100\n", {}},
+        {"Sieve (um),mass (%)\n0.1,100\n0.2,70\n0.5,20\n1,0\n", {.shares = Shares::oversize}},
+        {"Channel Diameter (Lower) (um),Diff. Volume (%)\n0.1,30\n0.2,50\n0.5,20\n1,0\n", {}},
+        {"Upper size (um),Volume (%)\n0.1,0\n0.2,30\n0.5,50\n1,20\n", {}},
+        {"from (um),to (um),Volume (%)\n0.1,0.2,30\n0.2,0.5,50\n0.5,1,20\n", {}},
+        {"Size (um),Volume (%),Cumulative Volume (%)\n0.1,0,0\n0.2,30,30\n0.5,50,80\n1,20,100\n", {.shares = Shares::undersize}},
+    };
+    const SizeClasses expected(classes_between(curve), by_volume);
+    for (const auto& [text, asked] : cases) {
+        CAPTURE(text);
+        const SizeDistribution found = sizes_of(text, asked);
+        for (const double fraction : {0.01, 0.3, 0.5, 0.9})
+            for (const Weighting by : {by_volume, by_number})
+                CHECK(size_quantile(found, fraction, by) == relative(expected.quantile(fraction, by), 1e-12));
+    }
+}
+
+TEST_CASE("size tables: counts, lists with a heading, and percentiles") {
+    CHECK(size_quantile(sizes_of("Size (um),Count\n1,100\n2,50\n"), 0.66, by_number) == relative(1e-6, 1e-13));
+    CHECK(size_quantile(sizes_of("Size (um),Count\n1,100\n2,50\n"), 0.67, by_number) == relative(2e-6, 1e-13));
+    CHECK(std::get<DiameterList>(sizes_of("Diameter (nm)\n100\n200\n")).diameters == std::vector{1e-7, 2e-7});
+    CHECK(std::get<DiameterList>(sizes_of("0.35\u00b5m\r\n0.85 \u03bcm\r\n# 3\r\n")).diameters == std::vector{0.35e-6, 0.85e-6});
+    CHECK(std::get<DiameterList>(sizes_of("100\n200\n", {.manner = {{"d"}, "nm"}})).diameters == std::vector{1e-7, 2e-7});
+    for (const char* text : {"D10 (um),D50 (um),D90 (um)\n0.2,0.3,0.6\n",
+                             "Sample;Dx (10) (\u03bcm);Dx (50) (\u03bcm);Dx (90) (\u03bcm)\nA;0,2;0,3;0,6\n",
+                             "d(0.1) [nm]\td(0.5) [nm]\td(0.9) [nm]\n200\t300\t600\n"}) {
+        CAPTURE(text);
+        const SizeDistribution found = sizes_of(text);
+        CHECK(size_quantile(found, 0.1, by_volume) == relative(0.2e-6, 1e-12));
+        CHECK(size_quantile(found, 0.5, by_volume) == relative(0.3e-6, 1e-12));
+        CHECK(size_quantile(found, 0.9, by_volume) == relative(0.6e-6, 1e-12));
+    }
+}
+
+TEST_CASE("size tables: what is not clear is refused with what would help") {
+    const std::pair<const char*, const char*> cases[] = {
+        {"Size (um),share (%)\n1,50\n2,50\n", "does not say what it counts; --sizes-by number, volume or mass does"},
+        {"Size,Volume (%)\n1,50\n2,50\n", "column 'Size' has no unit; --length-unit names it"},
+        {"Size (um),Volume (%)\n1,50\n2,40\n", "add up to 0.9"},
+        {"Size (um),Volume (%)\n1,0\n2,0\n3,100\n", "may be those of classes or a cumulative curve; --shares says which"},
+        {"Size (um),Number\n1,100\n2,50\n3,0\n", "may be those of classes or a cumulative curve; --shares says which"},
+        {"Size (um),Cum. Volume (%)\n1,5\n2,40\n4,100\n",
+         "5 % lie below the smallest diameter; add the row where the curve begins"},
+        {"Size (um),Cum. Volume (%)\n1,0\n2,40\n4,95\n", "not between 0 and all of the powder; add the row that is missing"},
+        {"Size (um),Cum. Volume (%)\n1,0\n2,60\n3,40\n4,100\n", "not between 0 and all of the powder"},
+        {"Size (um),Volume (%)\n1,-5\n2,105\n", ", line 2: the share '-5' is below zero"},
+        {"Size (um),Volume (%)\n1,30\n3,30\n2,40\n", ", line 4: the diameter '2' is out of order"},
+        {"Size (um),Volume (%)\n1,30\n1,30\n2,40\n", ", line 3: the diameter '1' is out of order"},
+        {"Size (um),Volume (%)\n0,30\n1,70\n", ", line 2: the diameter '0' is not above zero"},
+        {"Size (um),Volume (%),Mass (%)\n1,30,30\n2,70,70\n", "'Volume (%)', 'Mass (%)' may all hold shares"},
+        {"Size (um),Mean (um),Volume (%)\n1,1,30\n2,2,70\n", "'Size (um)', 'Mean (um)' may both hold sizes"},
+        {"Lower (um),Volume (%)\n1,30\n2,70\n", "the last class has no upper edge; add a row with a share of 0"},
+        {"Upper (um),Volume (%)\n1,30\n2,70\n", "the first class has no lower edge; add a row with a share of 0"},
+        {"D10 (um),D50 (um),D90 (um)\n0.2,0.3,0.6\n0.3,0.4,0.7\n", "has 2 rows with D10, D50 and D90"},
+        {"D10 (um),D50 (um),D90 (um)\n0.2,0.6,0.3\n", "do not ascend"},
+        {"time (s),force (N)\n1,2\n", "has no column of sizes; its headings are 'time (s)', 'force (N)'"},
+        {"100nm\n50\n", ", line 2: '50' has no unit"},
+        {"", "empty"},
+    };
+    for (const auto& [text, said] : cases) {
+        CAPTURE(text);
+        const std::string found = size_refusal(text);
+        CAPTURE(found);
+        CHECK(found.find(said) != std::string::npos);
+    }
+    CHECK(size_refusal("Size (um),Volume (%)\n1,50\n2,50\n", {.weighting = by_number}).find("say different things") !=
+          std::string::npos);
+    CHECK(size_refusal("100nm\n", {.weighting = by_number}).find("list of diameters") != std::string::npos);
+    CHECK(size_refusal("Size (um),Volume (%)\n1,50\n2,50\n", {.manner = {{}, "nm"}}).find("--length-unit gives one more") !=
+          std::string::npos);
+}
+
+TEST_CASE("sphere lists: radius or diameter, units of headings or named, blanks or tabs between the columns") {
+    const std::pair<const char*, FileManner> cases[] = {
+        {"#format x_y_z_r\n0.5\t0.5\t0.5\t0.5\n1.45\t0.5\t0.5\t0.5\n", {{}, "um"}},
+        {"x (um) y (um) z (um) radius (um)\n0.5 0.5 0.5 0.5\n1.45 0.5 0.5 0.5\n", {}},
+        {"# x [nm]   y [nm]   z [nm]   d [nm]\n  500 500 500 1000\n 1450 500 500 1000\n", {}},
+        {"# time 5 min\nx (um),y (um),z (um),radius (um)\n0.5,0.5,0.5,0.5\n1.45,0.5,0.5,0.5\n", {}},
+        {"0.5 0.5 0.5 1.0\n1.45 0.5 0.5 1.0\n", {{"x", "y", "z", "d"}, "um"}},
+        {"id;x;y;z;Durchmesser\n-;\u00b5m;\u00b5m;\u00b5m;\u00b5m\n7;0,5;0,5;0,5;1,0\n9;1,45;0,5;0,5;1,0\n", {}},
+        {"Label,Centroid_X (um),Centroid_Y (um),Centroid_Z (um),Volume (um3),Diameter "
+         "(um)\n1,0.5,0.5,0.5,9,1\n2,1.45,0.5,0.5,9,1\n",
+         {}},
+    };
+    for (const auto& [text, manner] : cases) {
+        CAPTURE(text);
+        const SphereList spheres = spheres_of(text, manner);
+        REQUIRE(spheres.radius.size() == 2);
+        CHECK(spheres.radius[1] == relative(0.5e-6, 1e-14));
+        CHECK((spheres.position[1] - Vec3(1.45e-6, 0.5e-6, 0.5e-6)).norm() < 1e-20);
+    }
+    for (const auto& [text, said] :
+         {std::pair("#format x_y_z_r\n1 2 3 4\n", "column 'x' has no unit; --length-unit names it"),
+          {"x (um),y (um),radius (um)\n1,2,3\n", "has no column z"},
+          {"x (um),y (um),z (um)\n1,2,3\n", "neither a radius nor a diameter"},
+          {"x (um),y (um),z (um),r (um),d (um)\n1,2,3,1,2\n", "both a radius and a diameter"},
+          {"x (um),y (um),z (um),r (um)\n1,2,3,1\n1,2,3,-1\n", ", line 3: the radius '-1' is not above zero"},
+          {"x (um),y (um),z (um),r (um),type\n1,2,3,1,1\n9,2,3,1,2\n", "'type' has several values"},
+          {"x (um),y (um),z (s),r (um)\n1,2,3,1\n", "has the unit 's'"}}) {
+        CAPTURE(text);
+        CHECK_THROWS_WITH_AS(spheres_of(text), doctest::Contains(said), Error);
+    }
 }

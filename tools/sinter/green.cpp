@@ -8,6 +8,9 @@
 #include <iostream>
 
 #include "analysis/histogram.h"
+#include "analysis/structure.h"
+#include "packing/sphere_list.h"
+#include "tools/common/each_state.h"
 #include "tools/common/progress.h"
 #include "tools/common/sizes.h"
 #include "core/contacts.h"
@@ -55,18 +58,20 @@ std::vector<double> diameters_of(const State& state) {
     return diameters;
 }
 
-/// The sizes that were asked for beside those that the particles have.
-Json sizes_of(const packing::SizeDistribution& distribution, const State& state) {
+Json made_sizes(const State& state) {
     const std::vector<double> diameters = diameters_of(state);
     Json made = cli::percentiles_json(diameters);
     const analysis::Spread spread = *analysis::spread_of(diameters);
     made["mean"] = spread.mean;
     made["minimum"] = spread.minimum;
     made["maximum"] = spread.maximum;
-    const Json asked = cli::percentiles_json([&](double fraction, bool by_volume) {
+    return made;
+}
+
+Json asked_sizes(const packing::SizeDistribution& distribution) {
+    return cli::percentiles_json([&](double fraction, bool by_volume) {
         return packing::size_quantile(distribution, fraction, by_volume ? Weighting::volume : Weighting::number);
     });
-    return {{"asked", asked}, {"made", made}};
 }
 
 /// Three digits and a prefix: 104 nm.
@@ -105,7 +110,35 @@ Json summary_of(const PackingOptions& options, const State& state) {
             {"coordination_number", contacts.coordination_number},
             {"mean_overlap_ratio", contacts.mean_overlap_ratio},
             {"relative_density", relative_density(state)},
-            {"diameters", sizes_of(options.distribution, state)}};
+            {"diameters", {{"asked", asked_sizes(options.distribution)}, {"made", made_sizes(state)}}}};
+}
+
+/// What is to be known of spheres that came from elsewhere.
+Json summary_of_spheres(const State& state) {
+    const packing::Overlaps overlaps = packing::overlaps_of(state);
+    const analysis::Density density = analysis::measured_density(state);
+    return {{"method", "spheres"},
+            {"contacts", overlaps.contacts},
+            {"coordination_number", 2.0 * static_cast<double>(overlaps.contacts) / static_cast<double>(state.particles.size())},
+            {"mean_overlap_ratio", overlaps.mean},
+            {"largest_overlap_ratio", overlaps.max},
+            {"relative_density", density.value ? Json(*density.value) : Json()},
+            {"measure", density.measure},
+            {"diameters", {{"made", made_sizes(state)}}}};
+}
+
+void report_spheres(const Json& summary, std::size_t spheres) {
+    const auto text = [&](const char* key) { return Json(std::round(1e4 * summary[key].get<double>()) / 1e4).dump(); };
+    std::cerr << "sinter green: " << spheres << " spheres, " << text("coordination_number")
+              << " contacts each, overlap h/(r1 + r2) " << text("mean_overlap_ratio") << " in the mean and "
+              << text("largest_overlap_ratio") << " at most\n";
+    if (summary["contacts"] == 0)
+        cli::warn("sinter green", "no spheres touch; --swell brings them together by a fraction of their distances");
+}
+
+State spheres_of(const GreenOptions& options) {
+    const packing::SphereList spheres = packing::read_spheres(options.spheres, options.manner);
+    return cli::at_place(options.spheres, [&] { return packing::body_of(spheres, options.body); });
 }
 
 }  // namespace
@@ -119,13 +152,21 @@ int green(int argc, char** argv) {
     const Material material = io::material_named(options.material);
     io::Output output(options.common.output, options.common.text);
 
-    cli::Progress progress("sinter green", options.common);
-    State state =
-        packing::pack(options.packing, cli::stop_requested, [&](const Relaxation& relaxation) { show(progress, relaxation); });
-    progress.clear();
+    State state;
+    Json summary;
+    if (!options.spheres.empty()) {
+        state = spheres_of(options);
+        summary = summary_of_spheres(state);
+        if (!options.common.quiet) report_spheres(summary, state.particles.size());
+    } else {
+        cli::Progress progress("sinter green", options.common);
+        state =
+            packing::pack(options.packing, cli::stop_requested, [&](const Relaxation& relaxation) { show(progress, relaxation); });
+        progress.clear();
+        summary = summary_of(options.packing, state);
+        if (options.distribution != "monosize" && !options.common.quiet) report_sizes(summary["diameters"]);
+    }
     state.materials = {material};
-    const Json summary = summary_of(options.packing, state);
-    if (options.distribution != "monosize" && !options.common.quiet) report_sizes(summary["diameters"]);
     io::append_history(state, cli::history_entry("sinter green", app, summary));
     output.write(std::move(state));
     output.commit();
