@@ -62,10 +62,15 @@ assert drawn.shape == shown.shape and abs(drawn - shown).mean() < 0.005, "the pi
 END
 }
 
+@test "powders: tables of sizes, lists of spheres and a furnace's log become bodies and firings" {
+    run_page docs/powders.md
+    assert_output --partial "asked for"
+}
+
 @test "no page has commands that are not run here" {
     run -0 grep -lE '^```(sh|bash|console|shell)$' -r "$ROOT/docs" "$ROOT/README.md" "$ROOT/CONTRIBUTING.md"
     for page in "${lines[@]}"; do
-        [[ $page == */README.md || $page == */tutorial.md || $page == */replace-a-stage.md || $page == */formats.md ]] || fail "$page has commands that no test runs"
+        [[ $page == */README.md || $page == */tutorial.md || $page == */replace-a-stage.md || $page == */formats.md || $page == */powders.md ]] || fail "$page has commands that no test runs"
     done
 }
 

@@ -40,6 +40,8 @@ setup_file() {
     printf '1.0 1.0 1.0 0.9\n1.8 1.0 1.0 0.8\n' >tomography.txt
     printf '2\nLattice="400 0 0 0 400 0 0 0 400" Properties=species:S:1:pos:R:3:radius:R:1\nAl 9 9 9 50\nZr 99 9 9 45\n' >mixed.xyz
     printf '{"name":"zirconia","density":6050,"young_modulus":2.1e11,"poisson_ratio":0.31}\n' >zirconia.json
+    printf 'time (min),temperature (C)\n0,25\n120,1150\n130,1150\n190,25\n' >furnace.csv
+    printf 'x (um),y (um),z (um),diameter (um)\n1,5,5,2\n2.9,5,5,2\n5,5,5,3\n8,5,5,3.4\n' >tomography.csv
 }
 
 @test "no line of a help is wider than 100 columns" {
@@ -69,7 +71,7 @@ setup_file() {
 
 @test "a value that is none is refused by every option that takes one, in a sentence that names it" {
     # What takes a file takes any word, and some are looked at once all options are known.
-    free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --schedule --distribution --image"
+    free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --schedule --distribution --image --columns --spheres --time-column --temperature-column"
     while read -ra command; do
         [ "${command[0]}" != dem-convert ] || continue
         while read -r option; do
