@@ -147,13 +147,15 @@ bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines
 	    BUILD=$(abspath $(BUILD)) $(PYTHON) bench/$$name.py -o $(BUILD)/bench/$$name.png | tee $(BUILD)/bench/$$name.jsonl; \
 	done
 
-man: $(TOOLS:%=$(BUILD)/man/%.1) $(BUILD)/man/dem-convert.1 $(BUILD)/man/dem-state.5   ## manual pages into build/man
+POST_TOOLS := dem-convert dem-view
+
+man: $(patsubst %,$(BUILD)/man/%.1,$(TOOLS) $(POST_TOOLS)) $(BUILD)/man/dem-state.5   ## manual pages into build/man
 
 $(BUILD)/man/%.1: $(BUILD)/bin/% docs/help-to-man.sh
 	@mkdir -p $(@D)
 	docs/help-to-man.sh $< > $@
 
-$(BUILD)/man/dem-convert.1: workflows/post/dem-convert $(wildcard workflows/post/*.py) docs/help-to-man.sh
+$(POST_TOOLS:%=$(BUILD)/man/%.1): $(BUILD)/man/%.1: workflows/post/% $(wildcard workflows/post/*.py) docs/help-to-man.sh
 	@mkdir -p $(@D)
 	PYTHONDONTWRITEBYTECODE=1 docs/help-to-man.sh $< > $@
 

@@ -1,7 +1,7 @@
 # packages.mk: the Debian packages that Kiln needs, and how a missing one is installed.
 BUILD_PACKAGES  := g++ libeigen3-dev libcli11-dev nlohmann-json3-dev libboost-dev
 TEST_PACKAGES   := doctest-dev bats bats-support bats-assert parallel jq
-PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio
+PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio libjs-three
 # Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip
 # without.
 NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake

@@ -1,4 +1,5 @@
-# kiln.bash: bash completion for sinter, bondify, bend and analyze. Options and their words are those that --help lists.
+# kiln.bash: bash completion for sinter, bondify, bend, analyze, dem-convert and dem-view. Options and their words are those that
+# --help lists.
 
 _kiln() {
     local current=$2 previous=$3 command=("$1") help words
@@ -10,9 +11,9 @@ _kiln() {
     if [[ ${1##*/} == analyze && $COMP_CWORD == 1 && $current != -* ]]; then
         words=$(sed -nE '/^Subcommands/,$ s/^  ([a-z]+) {2,}.*/\1/p' <<<"$help")
     elif [[ $previous == --* ]] && grep -qE -- "(^| |,)$previous ([A-Z]+:)?\{" <<<"$help"; then
-        words=$(sed -nE "s/^.*$previous ([A-Z]+:)?\{([^}]*)\}.*/\2/p" <<<"$help" | tr , ' ')
+        words=$(sed -nE "/$previous ([A-Z]+:)?\{/ { s/^.*$previous ([A-Z]+:)?\{([^}]*)\}.*/\2/p; q }" <<<"$help" | tr , ' ')
     elif [[ $current == -* ]]; then
-        words=$(grep -oE -- '^  (-[a-z],)?--[a-z-]+' <<<"$help" | grep -oE -- '--[a-z-]+')
+        words=$(sed -nE 's/^  (-[^ ]+( [A-Z]+,)? ?[^ ]*).*/\1/p' <<<"$help" | grep -oE -- '--[a-z-]+')
     elif [[ ${1##*/} == sinter && $COMP_CWORD == 1 ]]; then
         words="green"
         compopt -o default 2>/dev/null
@@ -20,4 +21,4 @@ _kiln() {
     mapfile -t COMPREPLY < <(compgen -W "${words-}" -- "$current")
 }
 
-complete -o default -F _kiln sinter bondify bend analyze
+complete -o default -F _kiln sinter bondify bend analyze dem-convert dem-view

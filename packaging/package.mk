@@ -10,13 +10,13 @@ install: all man                ## install programs, manual pages and completion
 	install -d $(INSTALLED)/bin $(SHARE)/man/man1 $(SHARE)/man/man5 $(SHARE)/kiln/post $(SHARE)/bash-completion/completions
 	install $(PROGRAMS) $(INSTALLED)/bin
 	install -m 644 $(addprefix workflows/post/,dem_state.py dem_convert.py tables.py units.py vtu_file.py) \
-	    workflows/post/convert_*.py $(SHARE)/kiln/post
-	install workflows/post/dem-convert $(SHARE)/kiln/post
-	ln -sf ../share/kiln/post/dem-convert $(INSTALLED)/bin/dem-convert
+	    workflows/post/convert_*.py workflows/post/dem_view.* $(SHARE)/kiln/post
+	install $(POST_TOOLS:%=workflows/post/%) $(SHARE)/kiln/post
+	for name in $(POST_TOOLS); do ln -sf ../share/kiln/post/$$name $(INSTALLED)/bin/$$name; done
 	install -m 644 $(BUILD)/man/*.1 $(SHARE)/man/man1
 	install -m 644 $(BUILD)/man/*.5 $(SHARE)/man/man5
 	install -m 644 completion/kiln.bash $(SHARE)/bash-completion/completions/sinter
-	for tool in bondify bend analyze; do ln -sf sinter $(SHARE)/bash-completion/completions/$$tool; done
+	for tool in bondify bend analyze $(POST_TOOLS); do ln -sf sinter $(SHARE)/bash-completion/completions/$$tool; done
 
 deb: all man                    ## a Debian package of this build into build/deb
 	packaging/make-deb.sh $(DEB_FOLDER) $(VERSION) $(BUILD)

@@ -31,7 +31,7 @@ BELOW = {
     "tests/physics": LIBRARY,
     "bench": LIBRARY,
 }
-TEXT = (".cpp", ".h", ".py", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")
+TEXT = (".cpp", ".h", ".py", ".js", ".html", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")
 MACHINE_PATH = re.compile(r"(?<![\w.$])/(home|root|work|mnt|srv)/")
 BARE_APPROX = re.compile(r"\bApprox\(")  # of doctest: it accepts any two numbers far below one
 INCLUDE = re.compile(r'#include "([^"]+)"')

@@ -13,7 +13,7 @@ setup() {
     cd tree
     for name in "$ROOT"/*; do [ "${name##*/}" = build ] || ln -s "$name" .; done
     for name in SINTER BONDIFY BEND ANALYZE; do ln -s "$(realpath "${!name}")" "build/bin/${name,,}"; done
-    ln -s "$ROOT/workflows/post/dem-convert" build/bin/
+    ln -s "$ROOT"/workflows/post/dem-{convert,view} build/bin/
     export HOME="$BATS_TEST_TMPDIR/home" PYTHONDONTWRITEBYTECODE=1
 }
 

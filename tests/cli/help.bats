@@ -5,7 +5,7 @@ load helper.bash
 
 # Every command that has a --help of its own, a line each: a subcommand of analyze comes by being listed there.
 commands() {
-    printf '%s\n' sinter "sinter green" bondify bend analyze dem-convert
+    printf '%s\n' sinter "sinter green" bondify bend analyze dem-convert dem-view
     "$ANALYZE" --help | sed -nE '/^Subcommands/,/^$/ s/^  ([a-z]+) {2,}.*/analyze \1/p'
 }
 
@@ -18,7 +18,7 @@ setup_file() {
     export PARTICLES=400 FILES="$BATS_FILE_TMPDIR/files" PYTHONDONTWRITEBYTECODE=1 OMP_NUM_THREADS=1
     mkdir -p "$BATS_FILE_TMPDIR/bin" "$FILES"
     for name in SINTER BONDIFY BEND ANALYZE; do ln -s "$(realpath "${!name}")" "$BATS_FILE_TMPDIR/bin/${name,,}"; done
-    ln -s "$ROOT/workflows/post/dem-convert" "$BATS_FILE_TMPDIR/bin/"
+    ln -s "$ROOT"/workflows/post/dem-{convert,view} "$BATS_FILE_TMPDIR/bin/"
     # LAMMPS stands in for any neighbour that reads a data file and writes another.
     printf '#!/bin/sh\ncp bonded.data relaxed.data\n' >"$BATS_FILE_TMPDIR/bin/lmp"
     chmod +x "$BATS_FILE_TMPDIR/bin/lmp"
@@ -63,7 +63,7 @@ setup_file() {
 @test "options stand in one order: those of the program, then the common ones" {
     common="--output( --text)? --quiet --verbose --threads --config --help --version"
     while read -ra command; do
-        [ "${command[0]}" != dem-convert ] || continue
+        [[ ${command[0]} != dem-* ]] || continue
         options=$(help_of "${command[@]}" | sed -nE 's/^  (-[a-z],)?(--[a-z-]+)( .*)?$/\2/p' | paste -sd' ')
         [ "${command[*]}" = analyze ] || assert_regex "$options" " $common\$"
     done < <(commands)
@@ -73,7 +73,7 @@ setup_file() {
     # What takes a file takes any word, and some are looked at once all options are known.
     free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --schedule --distribution --image --columns --spheres --time-column --temperature-column"
     while read -ra command; do
-        [ "${command[0]}" != dem-convert ] || continue
+        [[ ${command[0]} != dem-* ]] || continue
         while read -r option; do
             [[ " $free " != *" $option "* ]] || continue
             run -2 --separate-stderr "${command[@]}" "$option" much </dev/null

@@ -20,14 +20,16 @@ complete_line() {
         _kiln "$1" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"; printf "%s\n" "${COMPREPLY[@]}"' - "$@"
 }
 
-@test "an installed tree runs, with manual pages, completion and dem-convert" {
+@test "an installed tree runs, with manual pages, completion, dem-convert and dem-view" {
     run -0 --separate-stderr chain_of "$STAGE/usr/bin"
     jq -e '.young_modulus > 1e9' <<<"$output"
     run -0 bash -c 'cd "$STAGE/usr/share" && ls man/man1 man/man5 bash-completion/completions'
-    for page in sinter.1 bondify.1 bend.1 analyze.1 dem-convert.1 dem-state.5; do assert_output --partial "$page"; done
-    for name in sinter bondify bend analyze; do assert_line "$name"; done
+    for page in sinter.1 bondify.1 bend.1 analyze.1 dem-convert.1 dem-view.1 dem-state.5; do assert_output --partial "$page"; done
+    for name in sinter bondify bend analyze dem-convert dem-view; do assert_line "$name"; done
     "$SINTER" green -n 20 | "$STAGE/usr/bin/dem-convert" --to csv - "$BATS_TEST_TMPDIR/out.csv"
     run -0 wc -l <"$BATS_TEST_TMPDIR/out.csv"
+    run -0 "$STAGE/usr/bin/dem-view" --version
+    assert_output "$("$ANALYZE" info --version | sed 's/^analyze info/dem-view/')"
 }
 
 @test "the Debian package names what it needs, unpacks and runs; installed by dpkg it can be removed again" {
@@ -64,6 +66,10 @@ complete_line() {
     assert_output neck
     run -0 complete_line "$BONDIFY" --method ""
     assert_output $'exact\nsweep\nnecks'
+    run -0 complete_line "$ROOT/workflows/post/dem-view" --t
+    assert_output $'--title\n--three'
+    run -0 complete_line "$ROOT/workflows/post/dem-convert" --bonds c
+    assert_output cut
     run -0 complete_line "$SINTER" gr
     assert_output green
 }

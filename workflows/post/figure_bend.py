@@ -5,30 +5,11 @@ from matplotlib.patches import Circle
 
 import style
 from dem_state import read_file
+from dem_view import bent_positions
 from style import NM, pyplot
 
-SHOWN_DEFLECTION = 0.15  # of the bar's height; the true one is far too small to see
 SHOWN_SLICE = 6  # mean particle diameters of the width that are drawn, in the middle
 NANONEWTON = 1e-9  # N
-
-
-def without_rigid_motion(place, displacement):
-    """The displacements, m, less the shift and the small rotation of the whole body; place: where the particles were, m."""
-    arm, shift = place - place.mean(axis=0), displacement - displacement.mean(axis=0)
-    inertia = (arm**2).sum() * numpy.eye(3) - arm.T @ arm
-    rotation = numpy.linalg.solve(inertia, numpy.cross(arm, shift).sum(axis=0))
-    return shift - numpy.cross(rotation, arm)
-
-
-def bent_positions(particles, height):
-    """Centres with the bending exaggerated, m, and the factor, one digit and zeros."""
-    place = particles["position"] - particles["displacement"]
-    bending = without_rigid_motion(place, particles["displacement"])
-    low, high = numpy.quantile(bending[:, 2], (0.01, 0.99))
-    factor = SHOWN_DEFLECTION * height / (high - low)
-    unit = 10 ** numpy.floor(numpy.log10(factor))
-    factor = max(1.0, unit * numpy.floor(factor / unit))
-    return place + factor * bending, factor
 
 
 def cylinder_height(position, reach, x, radius, side):

@@ -5,8 +5,13 @@ import html
 import json
 import pathlib
 import shlex
+import sys
 
+import dem_view
+import style
+from convert_common import ConvertError
 from dem_state import read_file
+from figure_modulus import SHAPE
 from style import GPA
 
 FIGURES = (
@@ -20,6 +25,7 @@ FIGURES = (
      "Moduli of the bending tests, with necks of the sintering law and with the paper's bonds, and curves of the literature "
      "(Fig. 6). The band of the necks is what their unknown shape makes."),
 )
+PAGE_SIZE, REST_SIZE = 15_000_000, 1_300_000  # bytes of the page, and of what is neither picture nor state in it: mostly three.js
 KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
 
 STYLE = """
@@ -73,13 +79,85 @@ def picture(path):
 
 
 def figures(run, kind):
-    parts = []
+    """The figures by name, as HTML."""
+    parts = {}
     for name, title, caption in FIGURES:
         path = run / "figures" / f"{name}{kind}"
         wide = ' class="wide"' if name in ("states", "bend") else ""
-        parts.append(f'<figure{wide}><h3>{title}</h3><img src="{picture(path)}" alt="{html.escape(title)}: {html.escape(caption)}">'
-                     f"<figcaption>{html.escape(caption)}</figcaption></figure>")
-    return f'<div class="figures">{"".join(parts)}</div>'
+        said = html.escape(caption)
+        parts[name] = (f'<figure{wide}><h3>{title}</h3><img src="{picture(path)}" data-picture="{name}" '
+                       f'alt="{html.escape(title)}: {said}"><figcaption>{said}</figcaption></figure>')
+    return parts
+
+
+def density_plot(run, densities):
+    """Densification as a plot of dem_view.js: every step of sintering, and those at the densities of the cases marked."""
+
+    def look(chosen, **more):
+        text = [f"{step['time']:.4g} s, {step['temperature'] - 273.15:.0f} \u00b0C\n"
+                f"relative density {step['relative_density']:.3f}\n"
+                f"coordination number {step['coordination_number']:.2f}" for step in chosen]
+        x, y = [step["time"] for step in chosen], [step["relative_density"] for step in chosen]
+        return {"x": x, "y": y, "text": text, **more}
+
+    steps = [json.loads(line) for line in (run / "history.jsonl").read_text(encoding="utf-8").splitlines()]
+    picks = [min(steps, key=lambda step: abs(step["relative_density"] - density)) for density in densities]
+    return {
+        "picture": "density",
+        "x": "Time, s",
+        "y": "Relative density",
+        "height": 330,
+        "series": [look(steps, line=True, colour=style.LINE), look(picks, points=True, colour=style.ACCENT)]
+    }
+
+
+def curve(name, density, modulus, **look):
+    """A line of moduli, Pa, over relative densities."""
+    modulus = [None if value is None else value / GPA for value in modulus]
+    text = [f"{name}\nrelative density {x:.3f}\n{y or 0:.1f} GPa" for x, y in zip(density, modulus)]
+    return {"name": name, "x": density, "y": modulus, "text": text, **look}
+
+
+def modulus_plot(fits):
+    """Moduli as a plot of dem_view.js; fits: (what lies between the particles, result of analyze fit)."""
+    band = fits[0][1]["band"]["relative_density"]
+    series = [curve(each["name"], band, each["young_modulus"], line=True, dashes=dashes, colour=style.REFERENCE)
+              for each, dashes in zip(fits[0][1].get("references", []), ("8 4", "2 3", "9 3 2 3"))]
+    for (name, fit), colour in zip(fits, (style.ACCENT, style.LINE)):
+        band, points = fit["band"], fit["points"]
+        line = curve(f"fit, {name}", band["relative_density"], band["young_modulus"], line=True, colour=colour)
+        if name == "necks":
+            for edge, factor in (("low", 1 - SHAPE), ("high", 1 + SHAPE)):
+                line[edge] = [factor * value for value in line["y"]]
+        series.append(line)
+        density, modulus = [1 - point["porosity"] for point in points], [point["young_modulus"] for point in points]
+        series.append(curve(f"bending, {name}", density, modulus, points=True, colour=colour))
+    return {
+        "picture": "modulus",
+        "x": "Relative density",
+        "y": "Young's modulus, GPa",
+        "height": 380,
+        "low": [None, 0],
+        "series": series
+    }
+
+
+def view(run, cases, bent, pictures, plots, size):
+    """The packing and its bonds to turn, in place of their picture; the picture alone where three.js or a file is missing.
+
+    size: bytes that it may take; some states and bonds may be left out for it.
+    """
+    names = ["green.kiln", *(f"{case.name}/necks.kiln" for case in cases), *([f"{bent}/bent.kiln"] if bent else [])]
+    try:
+        scene = dem_view.Scene(dem_view.read_states(str(run / name) for name in names))
+        left = scene.fit(size)
+        shown = dem_view.fragment(scene, plots, pictures["states"])
+    except (ConvertError, OSError) as error:
+        print(f"report.py: warning: pictures only, {error}", file=sys.stderr)
+        return pictures["states"]
+    bar = f", and the bar at {bent} bent, with the forces in its bonds of Eq. 2\u20134" if bent else ""
+    note = f" To keep the page small it holds {left}." if left else ""
+    return f'{shown}<p class="note">The green body, the necks at each density{bar}.{note}</p>'
 
 
 def table2(entries):
@@ -147,7 +225,7 @@ def files(run):
     return table(["file", "size"], rows)
 
 
-def page(run, kind):
+def page(run, kind, bent):
     cases = sorted(path.parent for path in run.glob("*/modulus.json"))
     tests, necks = ([read_file(case / name)[0] for case in cases] for name in ("modulus.json", "necks_modulus.json"))
     bonds = [read_file(case / "bonds.json")[0] for case in cases]
@@ -159,6 +237,12 @@ def page(run, kind):
     facts = (("particles", f"{bonds[0]['particles']:,}"), ("seed", seed), ("densities", f"{len(cases)}"),
              ("Table 2, worst deviation", f"{100 * worst:.1f} %"),
              ("Young's modulus", f"{necks[0]['young_modulus'] / GPA:.0f} – {necks[-1]['young_modulus'] / GPA:.0f} GPa"))
+    pictures = figures(run, kind)
+    plots = [
+        density_plot(run, [float(case.name) for case in cases]),
+        modulus_plot((("necks", necks_fit), ("bonds of Eq. 2\u20134", fit)))
+    ]
+    turned = view(run, cases, bent, pictures, plots, PAGE_SIZE - sum(map(len, pictures.values())) - REST_SIZE)
     boxes = "".join(f"<div><dt>{html.escape(name)}</dt><dd>{value}</dd></div>" for name, value in facts)
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
@@ -167,7 +251,8 @@ def page(run, kind):
 <p class="lead">A run of Kiln after M. Dosta et al.,
 <i>Approximation of mechanical properties of sintered materials with discrete element method</i>, 2017.</p>
 <dl class="facts">{boxes}</dl>
-<h2>Figures</h2>{figures(run, kind)}
+<h2>The packing and its bonds</h2>{turned}
+<h2>Figures</h2><div class="figures">{"".join(text for name, text in pictures.items() if name != "states")}</div>
 <h2>Table 2 of the paper beside this run</h2>{table2(entries)}
 <p class="note">Numbers of bonds are scaled to the 99,000 particles of the paper.</p>
 <h2>Young's modulus: necks of the sintering law, which fill what the mass fills</h2>{moduli(necks, necks_fit)}
@@ -182,9 +267,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("run", type=pathlib.Path, help="folder of a run of workflows/paper, figures included")
     parser.add_argument("--figures", choices=tuple(kind[1:] for kind in KINDS), default="png", help="kind of figures to embed")
+    parser.add_argument("--bent", help="name of the case whose bent bar is shown")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="page to write")
     given = parser.parse_args()
-    text = page(given.run, f".{given.figures}")
+    text = page(given.run, f".{given.figures}", given.bent)
     partial = given.output.with_suffix(".partial")
     partial.write_text(text, encoding="utf-8")
     partial.replace(given.output)
