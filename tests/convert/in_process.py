@@ -16,6 +16,11 @@ GLASS = {"name": "lead glass", "density": 2500.0, "young_modulus": 7e10, "poisso
 STEEL = {"name": "steel", "density": 7850.0, "young_modulus": 2.1e11, "poisson_ratio": 0.3}
 
 
+def program(name):
+    """The path of a program: that in the environment, as in the other tests, or this tree's own."""
+    return os.environ.get(name, os.path.join(ROOT, "build", "bin", name.lower()))
+
+
 def convert(*arguments):
     """Status, warnings and error of a run."""
     said = io.StringIO()

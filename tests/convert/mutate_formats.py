@@ -10,7 +10,7 @@ import tempfile
 
 import numpy
 from foreign import FORMATS
-from in_process import ROOT, convert, dem_state
+from in_process import convert, dem_state, program
 
 TIGHT = 1e-12  # relative; of sums and differences of the box
 UNKNOWN = {}  # what has to come out of a file of which any bytes are others
@@ -122,8 +122,7 @@ def outcome(case, folder):
 
 def readable(stream, count):
     """Feeds all that was written to `analyze info`."""
-    program = os.environ.get("ANALYZE", os.path.join(ROOT, "build", "bin", "analyze"))
-    ended = subprocess.run([program, "info"], input=stream, capture_output=True, check=False)
+    ended = subprocess.run([program("ANALYZE"), "info"], input=stream, capture_output=True, check=False)
     if ended.returncode or ended.stdout.count(b"\n") < count:
         raise SystemExit(f"analyze info does not read what dem-convert wrote: {ended.stderr.decode()}")
 

@@ -3,11 +3,12 @@ format that has it."""
 import gzip
 import json
 import os
+import subprocess
 import tempfile
 import unittest
 
 import numpy
-from in_process import convert, converted, packing, refused, saved, written
+from in_process import ROOT, convert, converted, packing, program, refused, saved, written
 
 TITLE = "LAMMPS data file via write_data, version 29 Aug 2024, timestep = 1200, units = micro"
 BOX = "0 4 xlo xhi\n0 4 ylo yhi\n0 4 zlo zhi\n"
@@ -498,8 +499,43 @@ class Cases(unittest.TestCase):
                               ({"particles": {}}, "has no particles.position"),
                               ({"format": "dem-bend"}, "is dem-bend, expected a state")):
             self.no("bad.jsonl", text(**changes), says=says)
+        necks = {"necks": {"pair": {"type": "i4", "shape": [1, 2], "data": [0, 1]},
+                           "radius": {"type": "f8", "shape": [1], "data": [0.25]}}}
+        self.one("ok.jsonl", text(**necks))
+        _, warnings, _ = convert(os.path.join(self.folder, "ok.jsonl"), os.path.join(self.folder, "ok.xyz"))
+        self.assertTrue([each for each in warnings if "does not hold necks" in each])
+        necks["necks"]["pair"]["data"] = [0, 2]
+        self.no("bad.jsonl", text(**necks), says="a neck has particle row 2, there are 2")
         self.no("bad.jsonl", "{", says="document 1: is no line of JSON")
         self.no("bad.jsonl", '{"a":1,"a":2}\n', says="key 'a' stands twice")
+
+
+class Conformance(unittest.TestCase):
+    """The documents that every program has to take, or to refuse (tests/data/conformance): dem-convert does, too."""
+
+    def documents(self, kind):
+        folder = os.path.join(ROOT, "tests", "data", "conformance", kind)
+        return sorted(os.path.join(folder, name) for name in os.listdir(folder))
+
+    def test_valid(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for path in self.documents("valid"):
+                target = os.path.join(folder, os.path.basename(path) + ".kiln")
+                status, _, error = convert(path, target)
+                self.assertEqual((status, error), (0, ""), path)
+                ended = subprocess.run([program("ANALYZE"), "info", target], capture_output=True, check=False)
+                self.assertEqual((ended.returncode, ended.stderr), (0, b""), path)
+
+    def test_invalid(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for path in self.documents("invalid"):
+                target = os.path.join(folder, "out.kiln")
+                status, _, error = convert(path, target)
+                if status == 0:  # what is left of it after reading has to be sound
+                    ended = subprocess.run([program("ANALYZE"), "info", target], capture_output=True, check=False)
+                    self.assertEqual((ended.returncode, ended.stderr), (0, b""), path)
+                else:
+                    self.assertRegex(error, r"^dem-convert: [^\n]{1,600}$", path)
 
 
 if __name__ == "__main__":

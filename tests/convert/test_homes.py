@@ -8,15 +8,11 @@ import tempfile
 import unittest
 
 import numpy
-from in_process import ROOT, convert_common, dem_state, saved
+from in_process import ROOT, convert_common, dem_state, program, saved
 
 import convert_materials  # noqa: E402  (in_process says where they are)
 import schedules  # noqa: E402
 import units  # noqa: E402
-
-
-def program(name):
-    return os.environ.get(name, os.path.join(ROOT, "build", "bin", name.lower()))
 
 
 def units_of_the_library():

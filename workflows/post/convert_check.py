@@ -69,24 +69,37 @@ def check_materials(document, place):
     return len(names) or 1
 
 
+# Arrays that are known: type, columns, and whether a state has to have them.
+ARRAYS = {
+    "particles": {"position": ("f8", 3, True), "radius": ("f8", 1, True), "id": ("i8", 1, False), "material": ("i4", 1, False)},
+    "bonds": {"pair": ("i4", 2, True), "image": ("i1", 3, False), "radius": ("f8", 1, True), "length": ("f8", 1, True),
+              "volume": ("f8", 1, False)},
+    "necks": {"pair": ("i4", 2, True), "image": ("i1", 3, False), "radius": ("f8", 1, True)}
+}
+
+
 def check_arrays(document, place):
     """Shapes and types of all arrays, and that numbers are finite where they have to be."""
-    for group, needed in (("particles", {"position": 3, "radius": 1, "id": 1, "material": 1}),
-                          ("bonds", {"pair": 2, "image": 3, "radius": 1, "length": 1, "volume": 1})):
-        arrays = document.get(group, {} if group == "bonds" else None)
+    for group, known in ARRAYS.items():
+        if group not in document and group != "particles":
+            continue
+        arrays = document.get(group)
         if not isinstance(arrays, dict):
             raise ConvertError(f"{place}: {group} is not an object of arrays")
-        required = ("position", "radius") if group == "particles" else ("pair", "radius", "length")
-        for name in required if group in document else ():
-            if name not in arrays:
+        for name, (_, _, required) in known.items():
+            if required and name not in arrays:
                 raise ConvertError(f"{place}: has no {group}.{name}")
-        rows = len(arrays["radius"]) if "radius" in arrays else 0
+        rows = len(arrays["radius"])
         for name, values in arrays.items():
-            if not isinstance(values, numpy.ndarray) or values.dtype.str.lstrip("<>|=") not in KINDS:
+            kind = values.dtype.str.lstrip("<>|=") if isinstance(values, numpy.ndarray) and values.ndim else None
+            if kind not in KINDS:
                 raise ConvertError(f"{place}: {group}.{clipped(name)} is not an array of numbers")
-            if len(values) != rows or name in needed and values.size != rows * needed[name]:
+            wanted, width, _ = known.get(name, (kind, None, False))
+            if kind != wanted:
+                raise ConvertError(f"{place}: {group}.{name} has type {kind}, expected {wanted}")
+            if len(values) != rows or width and values.shape != ((rows, ) if width == 1 else (rows, width)):
                 raise ConvertError(f"{place}: {group}.{clipped(name)} has shape {list(values.shape)}, there are {rows} {group}")
-            if name in needed and not numpy.isfinite(values).all():
+            if width and not numpy.isfinite(values).all():
                 raise ConvertError(f"{place}: {group}.{name} is not finite in row {int(numpy.argmin(numpy.isfinite(values)))}")
 
 
@@ -105,28 +118,29 @@ def check_particles(particles, materials, place):
                            f"{materials}")
 
 
-def check_bonds(document, place):
-    bonds, count = document["bonds"], len(document["particles"]["radius"])
+def check_joints(document, group, place):
+    """What bonds and necks have in common: two particles that are there and not one, a radius, and no other of the same ends."""
+    bonds, count, what = document[group], len(document["particles"]["radius"]), group.rstrip("s")
     ids = document["particles"].get("id", numpy.arange(count))
     pair = bonds["pair"].astype(numpy.int64)
     image = bonds.get("image", numpy.zeros((len(pair), 3), numpy.int8)).astype(numpy.int64)
     if not len(pair):
         return
     if pair.min() < 0 or pair.max() >= count:
-        raise ConvertError(f"{place}: a bond has particle row {pair[(pair < 0) | (pair >= count)][0]}, there are {count}")
+        raise ConvertError(f"{place}: a {what} has particle row {pair[(pair < 0) | (pair >= count)][0]}, there are {count}")
 
     def shown(row):
         return "-".join(str(each) for each in ids[pair[row]].tolist())
 
     own = numpy.flatnonzero((pair[:, 0] == pair[:, 1]) & ~image.any(axis=1))
     if len(own):
-        raise ConvertError(f"{place}: bond {own[0]} has particle {ids[pair[own[0], 0]]} at both ends")
+        raise ConvertError(f"{place}: {what} {own[0]} has particle {ids[pair[own[0], 0]]} at both ends")
     thin = numpy.flatnonzero(bonds["radius"] < 0)
     if len(thin):
-        raise ConvertError(f"{place}: bond {shown(thin[0])} has radius {float(bonds['radius'][thin[0]])!r}, expected none below "
+        raise ConvertError(f"{place}: {what} {shown(thin[0])} has radius {float(bonds['radius'][thin[0]])!r}, expected none below "
                            "zero")
     if twice := same_bonds(pair, image):
-        raise ConvertError(f"{place}: bonds {twice[0]} and {twice[1]} are one: both join {shown(twice[1])} with the same image")
+        raise ConvertError(f"{place}: {group} {twice[0]} and {twice[1]} are one: both join {shown(twice[1])} with the same image")
 
 
 def same_bonds(pair, image):
@@ -154,10 +168,11 @@ def check(document, place):
     materials = check_materials(document, place)
     check_arrays(document, place)
     check_particles(document["particles"], materials, place)
-    if "bonds" in document:
-        check_bonds(document, place)
+    for group in ("bonds", "necks"):
+        if group in document:
+            check_joints(document, group, place)
     try:
-        json.dumps({key: value for key, value in document.items() if key not in ("particles", "bonds")}, allow_nan=False,
+        json.dumps({key: value for key, value in document.items() if key not in ARRAYS}, allow_nan=False,
                    default=lambda value: None)
     except ValueError:
         raise ConvertError(f"{place}: holds a number that is not finite") from None

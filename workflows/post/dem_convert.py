@@ -185,7 +185,8 @@ def states(path, reader, given):
     like = next(documents_of(given.like), None) if given.like else None
     if given.like and like is None:
         raise ConvertError(f"{given.like}: holds no state")
-    for found in READERS[reader](path, given):
+    count = 0
+    for count, found in enumerate(READERS[reader](path, given), start=1):
         if reader == "dem":
             for key in ("materials", "contacts", "temperature") if like else ():
                 if key in like:
@@ -199,6 +200,8 @@ def states(path, reader, given):
                 document.setdefault(key, like[key])
         check(document, path)
         yield document
+    if not count:
+        raise ConvertError(f"{path}: holds no state")
     if given.bond_radius is not None and "bond_radius" not in given.used:
         raise ConvertError(f"{path}: has no bonds; --bond-radius is for bonds without one")
 

@@ -5,17 +5,21 @@ import math
 import numpy
 
 ALIGNMENT = 64  # bytes
+MOST_KEYS, DEEPEST = 1024, 64  # of an object and of what stands in it; only hostile documents have more
+PIECE = 1 << 26  # bytes that are read at once: a header may promise more than there is
 TYPES = ("f8", "f4", "i8", "i4", "i2", "i1", "u1")
 
 
 def groups(document):
     """The places of a document where arrays live; a result may use the same keys for a number."""
-    return {key: document[key] for key in ("particles", "bonds") if isinstance(document.get(key), dict)}
+    return {key: document[key] for key in ("particles", "bonds", "necks") if isinstance(document.get(key), dict)}
 
 
 def unrepeated(pairs):
     """An object of JSON; a key that stands twice is refused."""
     keys = dict(pairs)
+    if len(pairs) > MOST_KEYS:
+        raise ValueError(f"an object has {len(pairs)} keys, more than {MOST_KEYS}")
     if len(keys) < len(pairs):
         names = [key for key, _ in pairs]
         raise ValueError(f"key '{next(key for key in names if names.count(key) > 1)}' stands twice")
@@ -26,6 +30,15 @@ def refuse_constant(name):
     raise ValueError(f"{name} is no number")
 
 
+def check_depth(value, left=DEEPEST):
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    if left < 0:
+        raise ValueError(f"values stand more than {DEEPEST} levels deep")
+    for each in inner:
+        if isinstance(each, (dict, list)):
+            check_depth(each, left - 1)
+
+
 def header_of(line):
     try:
         header = json.loads(line, object_pairs_hook=unrepeated, parse_constant=refuse_constant)
@@ -33,6 +46,7 @@ def header_of(line):
         raise ValueError(f"is no line of JSON ({error})") from None
     if not isinstance(header, dict):
         raise ValueError("is not a JSON object")
+    check_depth(header, DEEPEST - 1)
     size = header.pop("bytes", 0)
     if not isinstance(size, int) or isinstance(size, bool) or size < 0:
         raise ValueError("bytes is not a number of bytes")
@@ -56,9 +70,14 @@ def array_of(name, spec, payload):
     if not isinstance(data, list) or len(data) != count or not all(type(value) in kinds for value in data):
         raise ValueError(f"{name}: data is not a list of {count} numbers of type {spec['type']}")
     try:
-        return numpy.array(data, dtype).reshape(shape)
+        array = numpy.array(data, float if dtype.kind == "f" else numpy.int64)
     except OverflowError:
-        raise ValueError(f"{name}: a number is beyond the type {spec['type']}") from None
+        array = None
+    with numpy.errstate(over="ignore"):
+        narrow = None if array is None else array.astype(dtype)
+    if narrow is None or dtype.kind != "f" and (narrow != array).any() or not numpy.isfinite(narrow).all():
+        raise ValueError(f"{name}: a number is beyond the type {spec['type']}")
+    return narrow.reshape(shape)
 
 
 def read(stream):
@@ -68,7 +87,9 @@ def read(stream):
         if not line.strip():
             continue
         document, size = header_of(line)
-        payload = bytearray(stream.read(size))
+        payload = bytearray()
+        while len(payload) < size and (piece := stream.read(min(size - len(payload), PIECE))):
+            payload += piece
         if len(payload) < size:
             raise ValueError(f"{size} bytes belong behind the header, {len(payload)} are there")
         for group, arrays in groups(document).items():
