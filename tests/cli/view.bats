@@ -109,6 +109,8 @@ with Browser(sys.argv[1]) as page:
     page.wait("document.querySelector('.dem-view').view?.fine")
     page.run("(() => {" + TOOLS + "Object.assign(window, { view, settled, set, pixels, ink, change }); })()")
     states = [state for name in ("sintered", "bonded", "bent") for state in read_file(f"{name}.kiln")]
+    # A choice before the first state has been unpacked waits for it.
+    page.run("(async () => { const state = view.state; view.state = undefined; await view.recolour(); view.state = state; })()")
     print("states", page.run("view.header.states.length") == len(states))
     print("drawn", 0.1 < page.run("ink()") < 0.7, "fallback hidden", page.run("document.querySelector('.fallback').hidden"))
 

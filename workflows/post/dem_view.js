@@ -284,9 +284,11 @@ function drawPlot(holder, what) {
       const outline = [...edge(each.low), ...edge(each.high).reverse()];
       svg.append(element("path", { fill: each.colour, opacity: 0.15, d: `M${outline.join("L")}Z` }));
     }
+    // Where x goes back a new piece begins: several runs in one page.
+    const pieces = there.map(([x, y], k) => `${k && x >= there[k - 1][0] ? "L" : "M"}${atX(x).toFixed(2)} ${atY(y).toFixed(2)}`);
     if (each.line)
       svg.append(element("path", { fill: "none", stroke: each.colour, "stroke-width": 1.6, "stroke-dasharray": each.dashes || "",
-                                   d: "M" + there.map(([x, y]) => `${atX(x).toFixed(2)} ${atY(y).toFixed(2)}`).join("L") }));
+                                   d: pieces.join("") }));
     for (const [x, y, k] of there) {
       if (each.points) svg.append(element("circle", { cx: atX(x), cy: atY(y), r: k === each.current ? 6 : 4, fill: each.colour,
                                                       stroke: "white", "stroke-width": 1 }));
@@ -516,6 +518,7 @@ class View {
   }
 
   async recolour() {
+    if (!this.state) return; // chosen before the first state is there, which is coloured when it comes
     const { state } = this, asked = this.at("colour").value, [kind, name] = asked.split("."), levels = {};
     for (const [each, mesh] of Object.entries(this.meshes)) {
       const target = each === "bonds" ? state.bonds : state;
@@ -597,6 +600,7 @@ class View {
 
   tick(now) {
     this.awake = 0;
+    if (!this.state) return;
     const moving = performance.now() - this.lastChange < 160;
     if (this.pointer && !moving) this.pick(this.pointer);
     if (this.dirty || moving) {
