@@ -78,7 +78,7 @@ class Cases(unittest.TestCase):
             self.no("a.data", data(TITLE.replace("micro", style)), says=f"units {style} have no length in metres")
             self.no("a.dump", dump("1 1 1 2 2 0.5", "id type x y z radius", above=f"ITEM: UNITS\n{style}\n"),
                     says="no length in metres")
-        self.no("a.data", data(), "--units", "si", says="--units si is against what the first line says, micro")
+        self.no("a.data", data(), "--units", "si", says="--units si is against what the file says, micro")
         rows, columns = "1 1 1 2 2 0.5\n2 1 1.98 2 2 0.5", "id type x y z radius"
         two = (dump(rows, columns, 100, above="ITEM: UNITS\nmicro\nITEM: TIME\n2.5\n") + dump(rows, columns, 200,
                                                                                               above="ITEM: TIME\n5.0\n"))

@@ -9,7 +9,7 @@ import units
 from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, clipped, companion_of, joined_columns, number,
                             particle_arrays, periodic_axes, series, split_columns, wholes, without_companion, written)
 from convert_check import warn_of_loss
-from convert_found import Found
+from convert_found import Found, radius_from
 from tables import Table
 
 KEYS = ("box", "materials", "contacts", "temperature")  # of a state, which stand as JSON in remarks
@@ -100,15 +100,10 @@ def whole_column(table, name):
     return wholes(table.texts(name), table.places)
 
 
-def radii(table, system, needed=("radius", "diameter")):
+def radii(table, system):
     """Radii, m, of a column radius or diameter; NaN where there is none."""
-    if all(name in table.names for name in needed):
-        raise ConvertError(f"{table.path}: has the columns radius and diameter; leave one out")
-    if "radius" in table.names:
-        return table.values("radius", system)
-    if "diameter" in table.names:
-        return table.values("diameter", system) / 2
-    return numpy.full(len(table.rows), numpy.nan)
+    columns = {name: table.values(name, system) for name in ("radius", "diameter") if name in table.names}
+    return radius_from(columns, len(table.rows), table.path)
 
 
 def read_csv(path, given):

@@ -11,7 +11,7 @@ import units
 from convert_common import (ConvertError, bond_arrays, bounds, box_of, clipped, lines, number, numbers, particle_arrays,
                             periodic_axes, series, warn, whole, wholes, written)
 from convert_check import warn_of_loss
-from convert_found import Found, raised
+from convert_found import Found, raised, style_of_units
 from convert_materials import materials_of
 
 ATOM_COLUMNS = {  # of the styles that know a diameter
@@ -102,12 +102,7 @@ def title_of(head, path, given):
     said = named[0] if named else None
     if len(set(named)) > 1:
         raise ConvertError(f"{path}, line 1: names several styles of units")
-    if said and said not in units.SYSTEMS:
-        raise ConvertError(f"{path}: units {said} have no length in metres; known here: {', '.join(units.SYSTEMS)}")
-    if said and given.units and said != given.units:
-        raise ConvertError(f"{path}: --units {given.units} is against what the first line says, {said}")
-    if not said and not given.units:
-        warn(f"{path}: does not say its units; its numbers are taken for SI units, --units micro and so on say otherwise")
+    style = style_of_units(said, given, path, f"{path}, line 1")
     boundary = re.search(r"boundary ([pf]) ([pf]) ([pf]),", head) if ours else None
     time = re.search(r"time (\S+) s\b", head) if ours else None
     step = re.search(r"timestep = (\d+)", head) if theirs else None
@@ -121,8 +116,8 @@ def title_of(head, path, given):
         seconds = units.times(given.time_step, int(step[1]))
     elif given.time_step:
         raise ConvertError(f"{path}: says its time; --time-step is for one that says a step")
-    return said or given.units or "si", boundary and [each == "p"
-                                                      for each in boundary.groups()], seconds, int(shift[1]) if shift else 0
+    periodic = [axis == "p" for axis in boundary.groups()] if boundary else None
+    return style, periodic, seconds, int(shift[1]) if shift else 0
 
 
 class Parts:

@@ -8,7 +8,7 @@ from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, bou
                             lines, number, numbers, particle_arrays, periodic_axes, split_columns, warn, whole, wholes,
                             without_companion, words_for, written)
 from convert_check import warn_of_loss
-from convert_found import Found
+from convert_found import Found, radius_from, style_of_units
 from convert_materials import materials_of
 
 ONE_LINE = ("UNITS", "TIME", "TIMESTEP")
@@ -221,20 +221,6 @@ def positions_of(columns, places, box, system, place):
     return numpy.column_stack(found)
 
 
-def radii_of(columns, places, system, place):
-    """Radii, m, of a column radius or diameter; NaN where there is none."""
-    if "radius" in columns and "diameter" in columns:
-        raise ConvertError(f"{place}: has the columns radius and diameter; leave one out")
-    name = next((each for each in ("radius", "diameter") if each in columns), None)
-    values = values_of(name, columns.pop(name), places, system) if name else numpy.full(len(places), numpy.nan)
-    if values is None:
-        raise ConvertError(f"{place}: the column {name} holds no numbers")
-    small = numpy.flatnonzero(values <= 0)
-    if len(small):
-        raise ConvertError(f"{places[small[0]]}: the {name} is not a positive one")
-    return values / 2 if name == "diameter" else values
-
-
 def labels_of(columns, places):
     """What the particles are of: names of elements, unless these tell fewer apart than the types do."""
     kinds, names = columns.pop("type", None), columns.pop("element", None)
@@ -279,10 +265,7 @@ class Bonded:
         other = {name: each for name, each in values.items() if each is not None}
         if left := [clipped(name) for name, each in values.items() if each is None]:
             warn(f"{self.path}: the columns {', '.join(left)} hold words and are left out")
-        if "diameter" in other:
-            if "radius" in other:
-                raise ConvertError(f"{frame.place}: has the columns radius and diameter; leave one out")
-            other["radius"] = other.pop("diameter") / 2
+        other["radius"] = radius_from(other, len(places), frame.place)
         return {**bonds, **joined_columns(other)}
 
     def end(self, path):
@@ -292,17 +275,9 @@ class Bonded:
 
 
 def system_of(frame, before, given, path):
-    """The style of units of a frame: what it or an earlier frame says, or --units; both have to agree."""
-    said = before
-    if "UNITS" in frame.items:
-        said, place = frame.line("UNITS")
-        if said not in units.SYSTEMS:
-            raise ConvertError(f"{place}: units {clipped(said)} have no length in metres; known here: {', '.join(units.SYSTEMS)}")
-        if given.units and said != given.units:
-            raise ConvertError(f"{place}: --units {given.units} is against what the file says, {said}")
-    if said is None and given.units is None:
-        warn(f"{path}: does not say its units; its numbers are taken for SI units, --units micro and so on say otherwise")
-    return said or given.units or "si"
+    """The style of units of a frame: what it or an earlier frame says, else --units."""
+    said, place = frame.line("UNITS") if "UNITS" in frame.items else (before, path)
+    return style_of_units(said, given, path, place)
 
 
 def time_of(frame, system, given, path):
@@ -324,11 +299,11 @@ def read_dump(path, given):
         if frame.step() in steps:
             raise ConvertError(f"{frame.place}: the step {frame.step()} stands twice")
         steps.add(frame.step())
-        particles = {"position": positions_of(columns, places, box, system, frame.place),
-                     "radius": radii_of(columns, places, system, frame.place)}
+        position = positions_of(columns, places, box, system, frame.place)
         labels = labels_of(columns, places)
         values = {name: values_of(name, texts, places, system) for name, texts in columns.items()}
-        particles["id"] = values.pop("id", numpy.arange(1, len(places) + 1, dtype=numpy.int64))
+        particles = {"position": position, "radius": radius_from(values, len(places), frame.place),
+                     "id": values.pop("id", numpy.arange(1, len(places) + 1, dtype=numpy.int64))}
         if left := [clipped(name) for name, each in values.items() if each is None]:
             warn(f"{path}: the columns {', '.join(left)} hold words and are left out")
         particles.update(joined_columns({name: each for name, each in values.items() if each is not None}))

@@ -5,7 +5,8 @@ import dataclasses
 import numpy
 
 import convert_materials
-from convert_common import (ConvertError, free_box, nearest_image, neck_length, periodic_axes, rows_of, warn)
+import units
+from convert_common import (ConvertError, clipped, free_box, nearest_image, neck_length, periodic_axes, rows_of, warn)
 from dem_state import cylinder_volume
 from convert_check import check, check_box, check_materials
 
@@ -36,6 +37,28 @@ class Found:
         """Ids of a state as this file would have them."""
         ids = state["particles"].get("id", numpy.arange(len(state["particles"]["radius"])))
         return ids + raised(ids) if self.counts_from_one else ids
+
+
+def style_of_units(said, given, file, place):
+    """The style of units of a file: what it says or --units, which have to agree; SI units with a warning where neither does."""
+    if said is None and given.units is None:
+        warn(f"{file}: does not say its units; its numbers are taken for SI units, --units micro and so on say otherwise")
+    if said is not None and said not in units.SYSTEMS:
+        raise ConvertError(f"{place}: units {clipped(said)} have no length in metres; known here: {', '.join(units.SYSTEMS)}")
+    if said and given.units and said != given.units:
+        raise ConvertError(f"{place}: --units {given.units} is against what the file says, {said}")
+    return said or given.units or "si"
+
+
+def radius_from(arrays, count, place):
+    """The radii, m, of an array radius or diameter, which is taken out; NaN where there is neither."""
+    if "radius" in arrays and "diameter" in arrays:
+        raise ConvertError(f"{place}: has the columns radius and diameter; leave one out")
+    half = 2.0 if "diameter" in arrays else 1.0
+    values = arrays.pop("diameter", arrays.pop("radius", numpy.full(count, numpy.nan)))
+    if not isinstance(values, numpy.ndarray) or values.shape != (count, ):
+        raise ConvertError(f"{place}: the radii are not one number each")
+    return values / half
 
 
 def raised(ids):

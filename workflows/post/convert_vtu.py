@@ -12,7 +12,7 @@ import units
 from convert_common import (ConvertError, LARGE, SMALL, beside, bond_arrays, bounds, box_of, clipped, number, opened,
                             particle_arrays, periodic_axes, warn, written)
 from convert_check import warn_of_loss
-from convert_found import Found
+from convert_found import Found, style_of_units
 from vtu_file import Grid
 
 VERTEX, LINE = 1, 3  # types of cells
@@ -214,13 +214,10 @@ def whole_arrays(grid, names):
 
 
 def read_grid(path, given):
-    grid, system = Grid(path), given.units or "si"
+    grid = Grid(path)
     fields, data = grid.arrays["FieldData"], grid.arrays["PointData"]
     ours = "box_lengths" in fields
-    if ours and given.units:
-        raise ConvertError(f"{path}: is in SI units; --units is for one that does not say its units")
-    if not ours and not given.units:
-        warn(f"{path}: does not say its units; its numbers are taken for SI units, --units micro and so on say otherwise")
+    system = style_of_units("si" if ours else None, given, path, path)
     position = grid.arrays["Points"]
     if len(position) != 1 or next(iter(position.values())).shape != (grid.points, 3):
         raise ConvertError(f"{path}: has no points with three coordinates")

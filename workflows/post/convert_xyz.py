@@ -7,7 +7,7 @@ import units
 from convert_common import (ConvertError, bounds, box_of, clipped, lines, number, numbers, particle_arrays, periodic_axes, warn,
                             whole, wholes, words_for, written)
 from convert_check import warn_of_loss
-from convert_found import Found
+from convert_found import Found, radius_from, style_of_units
 from convert_materials import materials_of
 
 PAIR = re.compile(r"([^\s=\"]+)=(?:\"([^\"]*)\"|\{([^}]*)\}|(\S+))")
@@ -160,37 +160,17 @@ def keys_of(comment, place):
     return keys
 
 
-def system_of(keys, given, path, place):
-    """The style of units: what the frame says or --units; both at once have to agree."""
-    said = keys.get("units")
-    if said is None and given.units is None:
-        warn(f"{path}: does not say its units; its numbers are taken for metres, --units nano and so on say otherwise")
-    if said is not None and said not in units.SYSTEMS:
-        raise ConvertError(f"{place}: has Units={clipped(said)}; known here: {', '.join(units.SYSTEMS)}")
-    if said and given.units and said != given.units:
-        raise ConvertError(f"{place}: --units {given.units} is against what the file says, {said}")
-    return said or given.units or "si"
-
-
 def read_xyz(path, given):
     order, empty = [], True
     for place, comment, rows in frames(path):
         empty = False
         keys = keys_of(comment, place)
-        system = system_of(keys, given, path, place)
+        system = style_of_units(keys.get("units"), given, path, place)
         arrays = arrays_of(keys.get("properties", "species:S:1:pos:R:3"), rows, place, path, system)
         position = arrays.pop("pos", None)
         if not isinstance(position, numpy.ndarray) or position.shape != (len(rows), 3):
             raise ConvertError(f"{place}: Properties has no pos:R:3")
-        if "radius" in arrays and "diameter" in arrays:
-            raise ConvertError(f"{place}: has the columns radius and diameter; leave one out")
-        radius = arrays.pop("radius", None)
-        if radius is None:
-            radius = arrays.pop("diameter", numpy.full(len(rows), numpy.nan))
-            radius = radius if isinstance(radius, list) else radius / 2
-        if not isinstance(radius, numpy.ndarray) or radius.shape != (len(rows), ):
-            raise ConvertError(f"{place}: the column of radii is not one of numbers")
-        particles = {"position": position, "radius": radius}
+        particles = {"position": position, "radius": radius_from(arrays, len(rows), place)}
         labels, kinds = arrays.pop("species", None), arrays.pop("type", None)
         if isinstance(kinds, numpy.ndarray) and (kinds.ndim > 1 or kinds.dtype.kind not in "iu"):
             raise ConvertError(f"{place}: the column type is not one of whole numbers")
