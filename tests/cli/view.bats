@@ -67,6 +67,26 @@ END
     assert_output same
 }
 
+@test "necks that a state gives are those shown, whether their grains overlap or not" {
+    run -0 "$PYTHON" - <<'END'
+import numpy
+from dem_view import Body
+# A row along x in a box of ten: 0 and 1 overlap and have a neck of their own, 1 and 2 overlap, 2 and 0 have a neck through the face.
+state = {"box": {"vectors": [[10.0, 0, 0], [0, 4.0, 0], [0, 0, 4.0]]},
+         "particles": {"position": numpy.array([[1.0, 2, 2], [2.8, 2, 2], [4.7, 2, 2]]), "radius": numpy.array([1.0, 1.0, 1.0])},
+         "necks": {"pair": numpy.array([[1, 0], [2, 0]], numpy.int32), "radius": numpy.array([0.3, 0.4]),
+                   "image": numpy.array([[0, 0, 0], [1, 0, 0]], numpy.int8)}}
+body = Body(state, {})
+place = body.place_of
+shown = {tuple(sorted(numpy.flatnonzero(place == end)[0] for end in pair)): radius for pair, radius in zip(body.pair, body.bonds["radius"])}
+print(sorted(shown), [round(float(shown[pair]), 9) for pair in sorted(shown)], body.crossing)
+print(body.particles["coordination"][place].tolist(), numpy.round(body.particles["overlap"][place], 9).tolist())
+END
+    # a^2 = 4 R* h = 2 h: h of 0.045, 0.1 and 0.08, over R1 + R2.
+    assert_output "[(0, 1), (1, 2)] [0.3, 0.447213595] 1
+[2, 2, 2] [0.03125, 0.03625, 0.045]"
+}
+
 @test "a page needs nothing else" {
     needs_three
     run -0 "$PYTHON" - "$BATS_FILE_TMPDIR/view.html" <<'END'
@@ -137,7 +157,7 @@ with Browser(sys.argv[1]) as page:
     left, top, width, height = page.run("(() => { const r = view.canvas.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; })()")
     page.pointer("mouseMoved", left + width / 2, top + height / 2)
     page.wait("!view.tip.hidden && view.tip.textContent")
-    print(*(word in page.run("view.tip.textContent") for word in ("Particle ", "Coordination number: ", "Radius: 50.0 nm", "Overlap")))
+    print(*(word in page.run("view.tip.textContent") for word in ("Particle ", "Coordination number: ", "Radius of particle or grain: 50.0 nm", "Overlap")))
 
     page.run("set('state', 4)")
     page.run("set('colour', 'bonds.normal_force')")

@@ -30,8 +30,7 @@ LEVELS = 255  # of a coloured quantity
 PARTICLES = {
     "coordination": ("Coordination number", ""),
     "overlap": ("Overlap h/(R\u2081 + R\u2082), mean of its contacts", ""),
-    "radius": ("Radius", "m"),
-    "grain_size": ("Grain size", "m"),
+    "radius": ("Radius of particle or grain", "m"),
     "displacement": ("Displacement without that of the whole body", "m"),
     "material": ("Material, place in the list", "")
 }
@@ -149,6 +148,8 @@ class Body:
         """Bonds of the state; without them its contacts, with the necks of the sintering law. And what they say of particles."""
         count = len(self.radius)
         pair, overlap, crossing = contacts(self.position, self.radius, self.low, self.size, self.periodic)
+        if "necks" in document:
+            pair, overlap, crossing = self.with_necks(document["necks"], pair, overlap, crossing)
         touching = numpy.bincount(pair.ravel(), minlength=count)
         ratio = overlap / self.radius[pair].sum(axis=1)
         total = sum(numpy.bincount(pair[:, end], ratio, count) for end in (0, 1))
@@ -159,10 +160,7 @@ class Body:
             bonds = {"radius": neck_radius(self.radius[pair], overlap)}
         else:
             bonds = {name: values for name, values in document["bonds"].items() if values.ndim == 1}
-            rows = document["bonds"]["pair"]
-            image = document["bonds"].get("image", numpy.zeros((len(rows), 3), numpy.int8))
-            crossing = (image + self.moved[rows[:, 0]] - self.moved[rows[:, 1]] != 0).any(axis=1)
-            pair = self.place_of[rows]
+            pair, crossing = self.drawn_pairs(document["bonds"])
             touching = numpy.bincount(pair.ravel(), minlength=count)
         self.particles["coordination"] = touching
         pair = numpy.sort(pair, axis=1)
@@ -170,6 +168,23 @@ class Body:
         order = order[~crossing[order]]
         self.pair, self.crossing = pair[order], int(crossing.sum())
         self.bonds = {name: values[order] for name, values in bonds.items() if name not in ("volume", "length")}
+
+
+    def drawn_pairs(self, group):
+        """The pairs of bonds or necks, as places in self, and which of them go through a face."""
+        rows = group["pair"]
+        image = group.get("image", numpy.zeros((len(rows), 3), numpy.int8))
+        return self.place_of[rows], (image + self.moved[rows[:, 0]] - self.moved[rows[:, 1]] != 0).any(axis=1)
+
+    def with_necks(self, necks, pair, overlap, crossing):
+        """Contacts in which those whose neck the state gives have the overlap that belongs to it, h = a^2/(4 R*)."""
+        given, through = self.drawn_pairs(necks)
+        name = [numpy.sort(each, axis=1) @ [len(self.radius), 1] for each in (pair, given)]
+        others = ~numpy.isin(*name)
+        radius = self.radius[given]
+        shown = necks["radius"]**2 * radius.sum(axis=1) / (4 * radius.prod(axis=1))
+        pairs = ((pair, given), (overlap, shown), (crossing, through))
+        return tuple(numpy.concatenate((found[others], known)) for found, known in pairs)
 
 
 def neck_radius(radius, overlap):
