@@ -9,7 +9,9 @@ const SIGNED = ["#3b4cc0", "#6788ee", "#9abbff", "#c9d7f0", "#edd1c2", "#f7a889"
 const PLAIN = { particles: "#8fb0cc", bonds: "#d8a25e" }, PALE = "#c3ccd4"; // PALE: of what stands beside what is coloured
 const LINE = "#0072b2", ACCENT = "#d55e00";
 const STICK = 0.35;          // drawn over true radius of bonds that are shown alone, so that they do not hide each other
-const SLOW = 45, FAST = 24;  // ms a frame, between which the resolution of moving pictures stays
+const SLOW = 45, FAST = 24;  // ms a frame, between which the detail of moving pictures stays
+const COARSE = 0.35;         // lowest resolution of moving pictures; below this detail bodies are left out
+const SAMPLES = 16;          // of which one is left at the least, of spheres four, and these are drawn larger
 
 // ---- blocks of numbers --------------------------------------------------------------------------------------------------------
 async function unpacked(text, Type) {
@@ -185,17 +187,18 @@ function setBodies(mesh, arrays, count) {
   mesh.geometry = geometry;
 }
 
-// Draws only the bodies for which shows(k) is true.
+// Draws only the bodies for which shows(k) is true; every beginning of their order holds an even sample of all.
 function chooseBodies(mesh, count, shows) {
   const { index } = mesh.geometry, values = index.array;
   let at = 0;
-  for (let k = 0; k < count; ++k) {
-    if (!shows(k)) continue;
-    for (const corner of [0, 1, 2, 0, 2, 3]) values[at++] = 4 * k + corner;
-  }
+  for (let first = 0; first < SAMPLES; ++first)
+    for (let k = first; k < count; k += SAMPLES) {
+      if (!shows(k)) continue;
+      for (const corner of [0, 1, 2, 0, 2, 3]) values[at++] = 4 * k + corner;
+    }
   index.updateRange = { offset: 0, count: at };
   index.needsUpdate = true;
-  mesh.geometry.setDrawRange(0, at);
+  mesh.chosen = at / 6;
 }
 
 // ---- which spheres lie too deep to be seen: further than reach below the next cell of a coarse grid that is nearly empty ------
@@ -358,7 +361,7 @@ class View {
     this.camera.up.set(0, 0, 1);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     Object.assign(this.controls, { screenSpacePanning: true, enableKeys: false, rotateSpeed: 0.8, minZoom: 0.3, maxZoom: 60 });
-    this.quality = 1;
+    this.detail = 1;
     this.lastChange = -1e9;
     this.number = 0;
     this.fillSelects();
@@ -587,7 +590,7 @@ class View {
     return holder;
   }
 
-  // ---- drawing: at a lower resolution while something moves and a frame takes long, twice as fine at rest ----
+  // ---- drawing: coarser and with fewer bodies while something moves and a frame takes long, twice as fine at rest ----
   changed() {
     this.lastChange = performance.now();
     this.dirty = true;
@@ -602,23 +605,23 @@ class View {
     this.awake = 0;
     if (!this.state) return;
     const moving = performance.now() - this.lastChange < 160;
-    if (this.pointer && !moving) this.pick(this.pointer);
     if (this.dirty || moving) {
       if (this.dirty && this.drawnAt) {
         const took = now - this.drawnAt;
-        if (took > SLOW) this.quality = Math.max(0.35, 0.8 * this.quality);
-        if (took < FAST) this.quality = Math.min(1, 1.08 * this.quality);
+        if (took > SLOW) this.detail = Math.max(COARSE / SAMPLES, (took > 4 * SLOW ? 0.5 : 0.8) * this.detail);
+        if (took < FAST) this.detail = Math.min(1, 1.08 * this.detail);
       }
       this.drawnAt = this.dirty ? now : 0;
-      if (this.dirty) this.draw(this.quality);
+      if (this.dirty) this.draw(this.detail);
       this.dirty = false;
       this.fine = false;
       this.wake();
     } else if (!this.fine) {
       this.fine = true;
       this.drawnAt = 0;
-      this.draw(this.quality < 0.7 ? 1 : 2);
+      this.draw(this.detail < 0.7 ? 1 : 2);
     }
+    if (this.pointer && this.fine) this.pick(this.pointer);
   }
 
   placeCut() {
@@ -659,7 +662,7 @@ class View {
     });
   }
 
-  draw(quality) {
+  draw(detail) {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!this.state || !width) return;
     this.camera.updateMatrixWorld();
@@ -667,9 +670,12 @@ class View {
     const spheres = Number(this.at("spheres").value), sticks = Number(this.at("sticks").value), { particles, bonds } = this.meshes;
     particles.visible = spheres > 0;
     bonds.visible = sticks > 0 && this.arrays.count > 0;
-    particles.material.uniforms.scale.value = spheres;
     bonds.material.uniforms.scale.value = sticks * (this.arrays.count ? this.header.quantities.bonds.radius.high : 0);
-    this.renderer.setPixelRatio(Math.min(quality * window.devicePixelRatio, 3));
+    const share = Math.min(1, detail / COARSE), ofSpheres = Math.max(share, 4 / SAMPLES);
+    particles.geometry.setDrawRange(0, 6 * Math.ceil(particles.chosen * ofSpheres));
+    bonds.geometry.setDrawRange(0, 6 * Math.ceil(bonds.chosen * share));
+    particles.material.uniforms.scale.value = spheres / Math.cbrt(ofSpheres);
+    this.renderer.setPixelRatio(Math.min(Math.max(detail, COARSE) * window.devicePixelRatio, 3));
     this.renderer.setSize(width, height, false);
     this.renderer.render(this.scene, this.camera);
     this.drawRuler(width);
