@@ -466,19 +466,21 @@ def xyzr(chance):
         style = chance.choice(list(LENGTH))
         power, options = LENGTH[style], ["--columns", ",".join(columns), "--units", style]
     elif how == "yade":
-        power, head = 0, f"#format {'_'.join(columns)}\n"
+        style = chance.choice([None, *LENGTH])
+        power, head, options = LENGTH.get(style, 0), f"#format {'_'.join(columns)}\n", ["--units", style] if style else []
     else:
         head = " ".join(headings(chance, columns, unit)) + "\n"
         head = head if "/" not in head else " ".join(f"{name} ({unit})" if name != "id" else name for name in columns) + "\n"
+    named = how in ("columns", "units")
     if fault == "names":
         refuse = True
-        if options:
+        if named:
             options[1] = chance.choice([options[1] + ",q", options[1].replace("x", "q"), options[1].replace("z", "y")])
         else:
             head = head.replace("x", "q", 1).replace("X", "q", 1)
     elif fault == "units":
         refuse = True
-        if options:
+        if named:
             options = options[:2]
             options[1] = options[1].replace(unit, "s") if how == "columns" else options[1]
         else:

@@ -420,6 +420,8 @@ class Cases(unittest.TestCase):
         export is known by its content, not by the end of its name."""
         state = self.one("v.txt", "#format x_y_z_r\n0.5\t0.5\t0.5\t0.5\n1.45\t0.5\t0.5\t0.5\n")
         self.assertEqual(state["particles"]["position"].tolist(), [[0.5, 0.5, 0.5], [1.45, 0.5, 0.5]])
+        self.assertTrue([each for each in self.warnings if "taken for metres, --units" in each])
+        self.near(self.one("v.txt", "#format x_y_z_r\n0.5\t0.5\t0.5\t0.5\n", "--units", "nano")["particles"]["radius"], [5e-10])
         state = self.one("v.txt", "#format x_y_z_r_matId\n0.5 0.5 0.5 0.5 1\n1.45 0.5 0.5 0.5 0\n")
         self.assertEqual([state["materials"][kind]["name"] for kind in state["particles"]["material"]], ["material1", "material0"])
         for name in ("v.txt", "v.dat", "v.csv", "v.xyzr"):

@@ -67,6 +67,7 @@ class Table:
 
     def __init__(self, path, columns=None):
         self.path, self.remarks, self.names, self.units, self.rows, self.at = path, [], None, None, [], []
+        self.yade = False  # a list of the program of that name, which has SI units
         if columns:
             self.take_headings([clean.strip() for clean in columns])
         separator, awaited = None, bool(columns)
@@ -118,8 +119,7 @@ class Table:
             known = {name_and_unit(heading)[0] for heading in headings}
             if len(headings) == len(cells) and {"x", "y", "z"} <= known:
                 self.take_headings(headings)
-                if yade:  # the program of that name has SI units
-                    self.units = ["m" if name in EXTENT and unit is None else unit for name, unit in zip(self.names, self.units)]
+                self.yade = yade is not None
                 return True
         raise ConvertError(f"{self.path}: has {len(cells)} columns without headings; --columns names them, such as "
                            "--columns \"x (um),y (um),z (um),radius (um)\", and _ for one to leave out")
@@ -180,6 +180,9 @@ class Table:
         elif dimension not in (None, "number"):
             if system:
                 power = units.power(system, name)
+            elif self.yade:
+                warn(f"{self.path}: does not say its units; its numbers are taken for metres, --units micro and so on say "
+                     "otherwise")
             elif units.stem(name) in (*EXTENT, "length", "volume"):
                 raise ConvertError(f"{self.path}: column '{clipped(name)}' has no unit of {dimension}; known here: "
                                    f"{units.known(dimension)}, as in '{name} ({list(units.TABLE[dimension])[0]})'; --units is for "
