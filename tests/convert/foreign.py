@@ -433,7 +433,7 @@ def csv(chance):
         lines.insert(chance.randrange(len(lines) + 1), chance.choice(["", "  ", separator]))
     text = separator.join(heads) + "\n" + "".join(f"{line}\n" for line in lines)
     if chance.random() < 0.3:
-        text = "# from the microscope, time 5 min, box of glass\n" + text
+        text = chance.choice(["# from the microscope, time 5 min, box of glass\n", f"Sample{separator}bar 7\n\n"]) + text
     files = {"a.csv": encoded(chance, text, fault == "encoding")}
     if bonded:
         files["a.bonds.csv"] = ("id1,id2,radius (um),length (um)\n" + "".join(f"{line}\n" for line in bonds.lines(","))).encode()

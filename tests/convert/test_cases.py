@@ -402,10 +402,13 @@ class Cases(unittest.TestCase):
                      "x (um),y (um),z (um),r (um),\n0.5,0.5,0.5,0.5,\n1.45,0.5,0.5,0.5,\n",
                      "sep=;\nx (um);y (um);z (um);r (um);sample\n0.5;0.5;0.5;0.5;A1\n1.45;0.5;0.5;0.5;A2\n",
                      "x,y,z,r\n(um),(um),(um),(um)\n0.5,0.5,0.5,0.5\n1.45,0.5,0.5,0.5\n",
-                     "x (um) y (um) z (um) radius (um)\n0.5 0.5 0.5 0.5\n1.45 0.5 0.5 0.5\n"):
+                     "x (um) y (um) z (um) radius (um)\n0.5 0.5 0.5 0.5\n1.45 0.5 0.5 0.5\n",
+                     "Sample;bar 7;\nVoxel size;0,5;um\n\nlabel;x (um);y (um);z (um);r "
+                     "(um)\na;0,5;0,5;0,5;0,5\nb;1,45;0,5;0,5;0,5\n"):
             state = self.one("g.csv", text)
             self.near(state["particles"]["position"], near)
             self.near(state["particles"]["radius"], [5e-7, 5e-7])
+        self.assertTrue([each for each in self.warnings if "above the heading in line 4 is left out" in each])
         self.no("g.csv", "x (um),y (um),z (um),r (um),r (um)\n1,1,1,1,2\n", says="the column 'radius' stands twice")
         self.no("g.csv", "x (um),y (um),z (um),r (um),R [um]\n1,1,1,1,2\n", says="the column 'radius' stands twice")
         self.no("g.csv", "x (um);y (um);z (um);r (um)\n1;1;1;1.5\n1;1;10,000;1\n", says="which of them is decimal is not known")
@@ -414,6 +417,7 @@ class Cases(unittest.TestCase):
         self.no("g.csv", "id,x (um),y (um),z (um),r (um)\n1.6,1,1,1,1\n", says="'1.6' is not a whole number")
         self.no("g.csv", "id,x (um),y (um),z (um),r (um)\n1,1,1,1,1\n1,2,1,1,1\n", says="id 1 stands 2 times")
         self.no("g.csv", "a,b\n1,2\n", says="has no column x, only a, b; --columns names them")
+        self.no("g.csv", "a,b\nc,d\n", says="has no column x, only a, b; --columns names them")
 
     def test_lists_of_spheres(self):
         """x y z r and x y z d, as packing programs and tomography write them, by blanks, with --columns or a heading; MUSEN's

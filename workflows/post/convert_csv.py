@@ -107,7 +107,7 @@ def radii(table, system):
 
 
 def read_csv(path, given):
-    table, system = Table(path, given.columns), given.units
+    table, system = Table(path, given.columns, ("x", "y", "z")), given.units
     for name in ("x", "y", "z"):
         if name not in table.names:
             raise ConvertError(f"{path}: has no column {name}, only {', '.join(map(clipped, table.names))}; --columns names them "
@@ -131,7 +131,7 @@ def read_csv(path, given):
                   materials=keys.pop("materials", None), other=keys)
     companion = companion_of(path, ".bonds")
     if companion:
-        found.bonds = bonds_of(Table(companion, given.bond_columns), system)
+        found.bonds = bonds_of(Table(companion, given.bond_columns, ("id1", "id2")), system)
     elif given.bond_columns:
         raise ConvertError(f"{path}: has no table of bonds beside it; --bond-columns is for its columns")
     yield found

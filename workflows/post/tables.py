@@ -3,7 +3,7 @@
 Columns are parted by semicolons, tabs, commas or blanks, whichever the heading has first in this order. A heading is a name and
 perhaps a unit: "x (um)", "X [µm]", "x/um", "radius_um"; in the line below it, units may stand alone. With commas in numbers they
 are decimal commas, unless another number has a point. Lines that begin with # are remarks; the last one above the numbers may be
-the heading (numpy.savetxt)."""
+the heading (numpy.savetxt). Other lines above the heading are the report of an instrument and are left out."""
 import csv
 import re
 
@@ -65,62 +65,87 @@ def name_and_unit(heading):
 class Table:
     """Columns of a file by name, as texts with the lines they stand in."""
 
-    def __init__(self, path, columns=None):
+    def __init__(self, path, columns=None, wanted=()):
+        """columns: names in place of those of the file. wanted: names that the heading has; other lines above it are a report."""
         self.path, self.remarks, self.names, self.units, self.rows, self.at = path, [], None, None, [], []
         self.yade = False  # a list of the program of that name, which has SI units
+        self.wanted, self.separator, self.above = set(wanted), None, None
+        self.told = bool(columns)
         if columns:
-            self.take_headings([clean.strip() for clean in columns])
-        separator, awaited = None, bool(columns)
+            self.take_headings([name.strip() for name in columns])
         for row, line in lines(path, latin=True):
-            place = f"{path}, line {row}"
-            if not line.strip(" \t;,"):
-                continue
             if line.startswith("#"):
                 self.remarks.append(line[1:].strip())
-                continue
-            if row == 1 and re.fullmatch(r"sep=.", line.strip()):
-                separator = line.strip()[-1]  # what a spreadsheet says to another one
-                continue
-            separator = separator or separator_of(line)
-            cells = cells_of(line, separator, place)
-            if self.names is None and self.begins_here(cells, separator):
-                pass
-            elif self.names is None or awaited and not self.rows and not any(self.is_number(cell) for cell in cells):
-                headings = headings_of(line, separator, place)
-                awaited = self.names is not None  # --columns holds in place of these
-                if not awaited:
-                    self.take_headings(headings)
-                continue
-            elif not self.rows and self.are_units(cells):
-                self.units = [unit or (None if cell in SKIPPED else cell.strip("()[]")) for unit, cell in zip(self.units, cells)]
-                continue
-            while len(cells) > len(self.names) and not cells[-1]:
-                cells.pop()
-            if len(cells) != len(self.names):
-                raise ConvertError(f"{place}: has {len(cells)} columns, expected {len(self.names)}: "
-                                   f"{', '.join(clipped(name) for name in self.names)}")
-            self.rows.append(cells)
-            self.at.append(row)
+            elif row == 1 and re.fullmatch(r"sep=.", line.strip()):
+                self.separator = line.strip()[-1]  # what a spreadsheet says to another one
+            elif line.strip(" \t;,"):
+                self.take(line, row)
         if self.names is None:
-            raise ConvertError(f"{path}: is empty")
+            self.refuse_headings()
         self.turn_decimal_commas()
+
+    def take(self, line, row):
+        """A line that is neither blank nor a remark."""
+        place, separator = f"{self.path}, line {row}", self.separator or separator_of(line)
+        if self.names is None and not self.begins_here(line, separator, place):
+            self.take_heading_line(headings_of(line, separator, place), separator, row)
+            return
+        self.separator = separator
+        cells = cells_of(line, separator, place)
+        if not self.rows and self.told and not any(map(self.is_number, cells)):
+            return  # headings, in place of which --columns holds
+        if not self.rows and self.are_units(cells):
+            self.units = [unit or (None if cell in SKIPPED else cell.strip("()[]")) for unit, cell in zip(self.units, cells)]
+            return
+        while len(cells) > len(self.names) and not cells[-1]:
+            cells.pop()
+        if len(cells) != len(self.names):
+            raise ConvertError(f"{place}: has {len(cells)} columns, expected {len(self.names)}: "
+                               f"{', '.join(clipped(name) for name in self.names)}")
+        self.rows.append(cells)
+        self.at.append(row)
+
+    def take_heading_line(self, headings, separator, row):
+        if not self.wanted <= {name_and_unit(heading)[0] for heading in headings}:
+            self.above = self.above or headings
+            return
+        if self.above:
+            warn(f"{self.path}: what stands above the heading in line {row} is left out")
+        self.take_headings(headings)
+        self.separator = separator
+
+    def refuse_headings(self):
+        if self.above is None:
+            raise ConvertError(f"{self.path}: is empty")
+        names = [name_and_unit(heading)[0] for heading in self.above]
+        missing = sorted(self.wanted - set(names))[0]
+        raise ConvertError(f"{self.path}: has no column {missing}, only {', '.join(map(clipped, names))}; --columns names them in "
+                           "their "
+                           "order")
 
     @staticmethod
     def is_number(cell):
         return bool(NUMBER.fullmatch(cell) or DECIMAL_COMMA.fullmatch(cell))
 
-    def begins_here(self, cells, separator):
+    def begins_here(self, line, separator, place):
         """True if the numbers begin without a heading, after a remark that is one."""
-        if not all(self.is_number(cell) for cell in cells if cell) or not any(cells):
+        cells = line.split() if separator == " " else cells_of(line, separator, place)
+        plain = all(self.is_number(cell) for cell in cells if cell) and any(cells)
+        named = {name_and_unit(heading)[0] for heading in headings_of(line, separator, place)}
+        if not plain and self.wanted <= named:
             return False
         for remark in reversed(self.remarks):
             yade = YADE.fullmatch(remark)
-            headings = yade[1].split("_") if yade else headings_of(remark, separator, self.path)
+            headings = yade[1].split("_") if yade else headings_of(remark.replace('"', ""), separator, self.path)
             known = {name_and_unit(heading)[0] for heading in headings}
-            if len(headings) == len(cells) and {"x", "y", "z"} <= known:
+            if len(headings) == len(cells) and self.wanted and self.wanted <= known:
                 self.take_headings(headings)
                 self.yade = yade is not None
                 return True
+        if not plain:
+            return False
+        if self.above:
+            self.refuse_headings()
         raise ConvertError(f"{self.path}: has {len(cells)} columns without headings; --columns names them, such as "
                            "--columns \"x (um),y (um),z (um),radius (um)\", and _ for one to leave out")
 
