@@ -248,6 +248,8 @@ END
     head -c 3000 second.kiln >cut.kiln
     run -1 "$CONVERT" cut.kiln out.csv
     assert_output --partial "dem-convert: cut.kiln"
+    run -1 "$CONVERT" --from csv - out.kiln <<<$'x (m),y (m),z (m),r (m)\n1,1,1,wide'
+    assert_output "dem-convert: standard input, line 2: 'wide' is not a number"
     run -2 "$CONVERT" --radius 50 second.kiln out.csv
     assert_output --partial "'50' is not a number with a unit"
     while IFS='|' read -r option wanted; do

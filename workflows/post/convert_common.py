@@ -24,6 +24,11 @@ class ConvertError(Exception):
     """One sentence for the user: file, place, cause."""
 
 
+def placed(sentence):
+    """A sentence as it is shown: a pipe has a name."""
+    return re.sub(r"^-(?=[:,])", "standard input", str(sentence))
+
+
 class Voice:
     """Where warnings go: once each, to stderr, or nowhere."""
 
@@ -31,6 +36,7 @@ class Voice:
         self.name, self.quiet, self.said = "dem-convert", False, []
 
     def __call__(self, sentence):
+        sentence = placed(sentence)
         if sentence in self.said:
             return
         self.said.append(sentence)

@@ -13,7 +13,7 @@ import convert_xyz
 import dem_state
 import units
 from convert_check import check
-from convert_common import ConvertError, clipped, opened, unpacked, warn, written
+from convert_common import ConvertError, clipped, opened, placed, unpacked, warn, written
 from convert_found import completed
 
 EXAMPLES = """formats, by the end of the name or --from and --to:
@@ -286,7 +286,7 @@ def main(arguments=None):
         sys.stderr.close()  # the reader of the pipe has gone
         return 141
     except ConvertError as error:
-        print(f"dem-convert: {error}", file=sys.stderr)
+        print(f"dem-convert: {placed(error)}", file=sys.stderr)
         return 1
     except OSError as error:
         print(f"dem-convert: {error.filename or given.source}: {error.strerror or error}", file=sys.stderr)
