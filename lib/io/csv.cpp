@@ -186,18 +186,26 @@ std::vector<double> CsvTable::values(std::size_t column, Dimension dimension, co
                     (heading.unit.empty() ? "has no unit" : "has the unit " + excerpt(heading.unit)) +
                     (known.empty() ? ", a plain number is required" : "; known here: " + known));
     }
-    std::vector<double> values;
-    const std::size_t width = headings_.size();
-    for (std::size_t row = 0; row < rows(); ++row) {
-        const std::string_view cell = table_.cells[row * width + column];
-        const auto number = number_in(cell, table_.decimal_comma);
-        if (cell.empty()) throw Error(place(row) + ": column " + excerpt(heading.text) + " is empty");
-        if (!number) throw Error(place(row) + ": " + excerpt(cell) + " is not a number");
-        values.push_back(scale->si(*number));
-        if (dimension == Dimension::temperature && !(values.back() > 0.0))
-            throw Error(place(row) + ": " + excerpt(cell) + " " + heading.unit + " is not above absolute zero");
+    std::vector<double> values = numbers(column);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+        values[row] = scale->si(values[row]);
+        if (dimension == Dimension::temperature && !(values[row] > 0.0))
+            throw Error(place(row) + ": " + excerpt(table_.cells[row * headings_.size() + column]) + " " + heading.unit +
+                        " is not above absolute zero");
     }
     return values;
+}
+
+std::vector<double> CsvTable::numbers(std::size_t column) const {
+    std::vector<double> list;
+    for (std::size_t row = 0; row < rows(); ++row) {
+        const std::string_view cell = table_.cells[row * headings_.size() + column];
+        const auto number = number_in(cell, table_.decimal_comma);
+        if (cell.empty()) throw Error(place(row) + ": column " + excerpt(headings_[column].text) + " is empty");
+        if (!number) throw Error(place(row) + ": " + excerpt(cell) + " is not a number");
+        list.push_back(*number);
+    }
+    return list;
 }
 
 std::optional<std::vector<double>> CsvTable::column(const ColumnNames& names, Dimension dimension) const {

@@ -47,7 +47,10 @@ class CsvTable {
     /// unit: of a heading that has none.
     std::vector<double> values(std::size_t column, Dimension dimension, const std::string& unit = "") const;
 
-    /// Both in one.
+    /// The numbers of a column as they stand, whatever its unit: of one whose heading is more than a name and a unit.
+    std::vector<double> numbers(std::size_t column) const;
+
+    /// find() or get(), and values().
     std::optional<std::vector<double>> column(const ColumnNames& names, Dimension dimension) const;
     std::vector<double> required(const ColumnNames& names, Dimension dimension) const;
 

@@ -19,7 +19,7 @@ physics::Schedule logged(const std::string& text, const io::LogColumns& columns 
     return io::read_schedule(file.string(), columns);
 }
 
-std::string refusal(const std::string& text) {
+std::string refused(const std::string& text) {
     try {
         logged(text);
     } catch (const Error& error) {
@@ -55,7 +55,7 @@ TEST_CASE("furnace log: units of time and temperature in the headings, or in a r
 
 TEST_CASE("furnace log: a column that is not clear is chosen by its heading") {
     const std::string two = "t (min),Temperature SP (C),Temperature PV (C)\n0,20,25\n10,1000,995\n";
-    CHECK(refusal(two).find("'Temperature SP (C)' and 'Temperature PV (C)' may both be meant; choose by --temperature-column") !=
+    CHECK(refused(two).find("'Temperature SP (C)' and 'Temperature PV (C)' may both be meant; choose by --temperature-column") !=
           std::string::npos);
     CHECK(logged(two, {"", "Temperature PV"}).highest() == relative(1268.15, 1e-14));
     CHECK(logged(two, {"t (min)", "Temperature SP (C)"}).highest() == relative(1273.15, 1e-14));
@@ -71,17 +71,17 @@ TEST_CASE("furnace log: holds of thousands of rows are two corners, ramps are as
 }
 
 TEST_CASE("furnace log: what is no schedule is refused with its line") {
-    CHECK(refusal("time (s),T (C)\n0,25\n100,900\n90,1000\n").find(", line 4: the time goes back") != std::string::npos);
-    CHECK(refusal("time,T (C)\n23:59:00,25\n00:01:00,30\n").find(", line 3: the time goes back") != std::string::npos);
-    CHECK(refusal("time (s),T\n0,25\n100,900\n").find("'T' has no unit; known here: K, C") != std::string::npos);
-    CHECK(refusal("time,T (C)\n0,25\n100,900\n").find("'time' has no unit; known here: s, ms, us, min, h, d") != std::string::npos);
-    CHECK(refusal("time (s),T (K)\n0,25\n100,900\n").find(", line 2: '25' K is colder than any furnace") != std::string::npos);
-    CHECK(refusal("time (s),T (C)\n0,25\n100,9000\n").find(", line 3: '9000' C is hotter than any furnace") != std::string::npos);
-    CHECK(refusal("time (s),T (C)\n0,25\n100,\n").find(", line 3") != std::string::npos);
-    CHECK(refusal("time (s),T (C)\n0,25\n").find("has one row") != std::string::npos);
-    CHECK(refusal("time (s),T (C)\n5,25\n5,30\n").find("same time") != std::string::npos);
-    CHECK(refusal("time (m),T (C)\n0,25\n5,30\n").find("'m'; known here") != std::string::npos);
-    CHECK(refusal("time,T (C)\n11/12/2026 10:00,25\n11/12/2026 11:00,30\n").find(", line 2: '11/12/2026 10:00' is no time") !=
+    CHECK(refused("time (s),T (C)\n0,25\n100,900\n90,1000\n").find(", line 4: the time goes back") != std::string::npos);
+    CHECK(refused("time,T (C)\n23:59:00,25\n00:01:00,30\n").find(", line 3: the time goes back") != std::string::npos);
+    CHECK(refused("time (s),T\n0,25\n100,900\n").find("'T' has no unit; known here: K, C") != std::string::npos);
+    CHECK(refused("time,T (C)\n0,25\n100,900\n").find("'time' has no unit; known here: s, ms, us, min, h, d") != std::string::npos);
+    CHECK(refused("time (s),T (K)\n0,25\n100,900\n").find(", line 2: '25' K is colder than any furnace") != std::string::npos);
+    CHECK(refused("time (s),T (C)\n0,25\n100,9000\n").find(", line 3: '9000' C is hotter than any furnace") != std::string::npos);
+    CHECK(refused("time (s),T (C)\n0,25\n100,\n").find(", line 3") != std::string::npos);
+    CHECK(refused("time (s),T (C)\n0,25\n").find("has one row") != std::string::npos);
+    CHECK(refused("time (s),T (C)\n5,25\n5,30\n").find("same time") != std::string::npos);
+    CHECK(refused("time (m),T (C)\n0,25\n5,30\n").find("'m'; known here") != std::string::npos);
+    CHECK(refused("time,T (C)\n11/12/2026 10:00,25\n11/12/2026 11:00,30\n").find(", line 2: '11/12/2026 10:00' is no time") !=
           std::string::npos);
-    CHECK(refusal("x (um),y (um)\n0.5,0.5\n").find("its headings are 'x (um)', 'y (um)'") != std::string::npos);
+    CHECK(refused("x (um),y (um)\n0.5,0.5\n").find("its headings are 'x (um)', 'y (um)'") != std::string::npos);
 }

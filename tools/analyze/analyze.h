@@ -15,5 +15,6 @@ int conductivity(int argc, char** argv);
 int voxel(int argc, char** argv);
 int fit(int argc, char** argv);
 int mean(int argc, char** argv);
+int kinetics(int argc, char** argv);
 
 }  // namespace kiln::analyze

@@ -28,6 +28,7 @@ constexpr std::array subcommands{
     Subcommand{"voxel", "a state as an image of voxels, for NumPy or ParaView", analyze::voxel},
     Subcommand{"fit", "laws of Young's modulus against porosity through several tests or measurements", analyze::fit},
     Subcommand{"mean", "means of several results, with their intervals of confidence", analyze::mean},
+    Subcommand{"kinetics", "activation energies and constants of diffusion from measured curves of density", analyze::kinetics},
 };
 
 /// `analyze`, `analyze --help`, or a subcommand that does not exist.
