@@ -1,0 +1,28 @@
+"""with_material.py: a body with another material: the states of a stream, all of their particles of the material of a JSON file."""
+import argparse
+import json
+import sys
+
+import dem_state
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("material", help="JSON of a material, as analyze kinetics --save-material writes it")
+    parser.add_argument("state", help="stream of states with one material")
+    parser.add_argument("-o", "--output", required=True, help="stream to write")
+    given = parser.parse_args()
+    with open(given.material, encoding="utf-8") as stream:
+        material = json.load(stream)
+    states = dem_state.read_file(given.state)
+    for state in states:
+        if len(state.get("materials", [])) > 1:
+            sys.exit(f"with_material.py: {given.state}: has several materials")
+        state["materials"] = [material]
+    with open(given.output, "wb") as stream:
+        for state in states:
+            dem_state.write(stream, state)
+
+
+if __name__ == "__main__":
+    main()
