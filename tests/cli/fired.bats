@@ -55,6 +55,15 @@ END
     assert_output "fired.py: without.csv: has no column relative_density, only firing, density"
 }
 
+@test "two firings calibrate the diffusion, and foretell the other two better than the published constants do" {
+    jq -e '.bodies[0].curves | length == 4 and (map(select(.held_out | not)) | length == 2 and all(.max < 1e-4))
+        and (map(select(.held_out)) | length == 2 and all(.max < 0.04))' fired/calibrated.json
+    jq -e '.grain_boundary_diffusion.activation_energy < 300e3' fired/calibrated.material.json
+    run -0 cat fired/calibrated.txt
+    assert_line --regexp "^ +0\.67 +0\.670\* 25C 10K/min 1100C"
+    assert_line --regexp "^ +0\.79 +0\.[78][0-9]+  25C 10K/min 1200C"
+}
+
 @test "a second call makes nothing" {
     fired SINTER=false ANALYZE=false
 }

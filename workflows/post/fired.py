@@ -62,6 +62,7 @@ def compare(run, schedules, measured):
         state = read_file(run / case / "density.json")[0]
         entry = {
             "firing": case,
+            "schedule": schedule,
             "temperature": peak[case],
             "relative_density": state["relative_density"],
             "measured": measured.get(case),
