@@ -42,6 +42,12 @@ run_page() {
     assert_output --partial "E0, GPa"
 }
 
+@test "constants of diffusion are found as the page says" {
+    run_page docs/kinetics.md
+    assert_output --regexp "narrowest master curve +3 +568\."
+    assert_output --regexp "history.jsonl +3 "
+}
+
 @test "stages are replaced as the page says, in Python, in the shell and in a study" {
     run_page docs/replace-a-stage.md
     jq -e '.history[-1].arguments == ["--volume", "cap-corrected"]' <(head -1 mine/0.88/bonded.kiln)
