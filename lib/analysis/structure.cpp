@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "analysis/envelope.h"
+#include "physics/recorded_necks.h"
+#include "physics/sinter_contact.h"
 
 namespace kiln::analysis {
 
@@ -31,7 +33,7 @@ std::vector<double> solid_volumes(const State& state) {
 }  // namespace
 
 std::vector<Pair> contacts_of(const State& state) {
-    if (!state.bonds) return find_pairs(state.box, state.particles.position, state.particles.radius);
+    if (!state.bonds) return physics::recorded_contacts(state).pairs;
     std::vector<Pair> contacts;
     for (std::size_t bond = 0; bond < state.bonds->size(); ++bond)
         contacts.push_back({state.bonds->pair[bond][0], state.bonds->pair[bond][1], state.bonds->image[bond]});
@@ -41,11 +43,32 @@ std::vector<Pair> contacts_of(const State& state) {
 std::vector<double> overlap_ratios(const State& state, const std::vector<Pair>& contacts) {
     const std::vector<double>& radius = state.particles.radius;
     std::vector<double> ratios;
+    if (!state.bonds && state.necks) {
+        ratios = physics::recorded_contacts(state).overlap;
+        for (std::size_t row = 0; row < ratios.size(); ++row)
+            ratios[row] /= radius[static_cast<std::size_t>(contacts[row].i)] + radius[static_cast<std::size_t>(contacts[row].j)];
+        return ratios;
+    }
     for (const Pair& pair : contacts) {
         const double reach = radius[static_cast<std::size_t>(pair.i)] + radius[static_cast<std::size_t>(pair.j)];
         ratios.push_back(std::max(0.0, 1.0 - pair_vector(state.box, state.particles.position, pair).norm() / reach));
     }
     return ratios;
+}
+
+physics::GrainSize grain_size(const State& state) {
+    const std::vector<double>& radius = state.particles.radius;
+    if (!state.bonds) {
+        const physics::RecordedContacts contacts = physics::recorded_contacts(state);
+        return physics::grain_size(radius, contacts.pairs, contacts.overlap);
+    }
+    std::vector<double> overlap;
+    for (std::size_t bond = 0; bond < state.bonds->size(); ++bond) {
+        const auto [i, j] = state.bonds->pair[bond];
+        const double reduced = physics::reduced_radius(radius[static_cast<std::size_t>(i)], radius[static_cast<std::size_t>(j)]);
+        overlap.push_back(physics::overlap_of_neck(state.bonds->radius[bond], reduced));
+    }
+    return physics::grain_size(radius, contacts_of(state), overlap);
 }
 
 std::vector<std::size_t> cluster_sizes(std::size_t particles, const std::vector<Pair>& contacts) {

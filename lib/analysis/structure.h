@@ -7,14 +7,19 @@
 
 #include "core/contacts.h"
 #include "core/state.h"
+#include "physics/grain_size.h"
 
 namespace kiln::analysis {
 
-/// The bonds of a state that has them, else the pairs of particles that overlap.
+/// The bonds of a state that has them, else the pairs of particles that overlap or whose neck is recorded.
 std::vector<Pair> contacts_of(const State& state);
 
-/// Of each contact (r1 + r2 - d)/(r1 + r2), which is h/2R for equal spheres; bonded spheres that stand apart count as 0.
+/// Of each contact h/(r1 + r2), which is h/2R for equal spheres, h being r1 + r2 - d, or what the recorded neck says; bonded
+/// spheres that stand apart count as 0. contacts: those of contacts_of().
 std::vector<double> overlap_ratios(const State& state, const std::vector<Pair>& contacts);
+
+/// Sizes of the particles as grains; a neck is that of a bond, else of a contact.
+physics::GrainSize grain_size(const State& state);
 
 /// Sizes of the groups that hang together by contacts, the largest first; a particle alone is a group of one.
 std::vector<std::size_t> cluster_sizes(std::size_t particles, const std::vector<Pair>& contacts);

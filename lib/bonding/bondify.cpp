@@ -108,10 +108,10 @@ Bonds shrink(State& state, const std::vector<Pair>& pairs, const std::vector<Ove
 }
 
 /// The necks between particles that stay as they are, thin ones included.
-Bonds keep(const State& state, const std::vector<Pair>& pairs, const std::vector<Overlap>& overlaps, const Options& options,
-           Summary& summary, const Watch& watch) {
+Bonds keep(const State& state, const physics::RecordedContacts& contacts, const std::vector<Overlap>& overlaps,
+           const Options& options, Summary& summary, const Watch& watch) {
     const std::vector<double>& radius = state.particles.radius;
-    NeckSizes sizes = neck_sizes(state, pairs, options.necks, watch);
+    NeckSizes sizes = neck_sizes(state, contacts, options.necks, watch);
     const double box = state.box.volume();
     summary.neck_factor = sizes.factor;
     summary.limited = sizes.limited;
@@ -123,7 +123,7 @@ Bonds keep(const State& state, const std::vector<Pair>& pairs, const std::vector
     for (std::size_t bond = 0; bond < overlaps.size(); ++bond) {
         const auto [first, second, distance] = overlaps[bond];
         bonds.pair.push_back({first, second});
-        bonds.image.push_back(pairs[bond].image);
+        bonds.image.push_back(contacts.pairs[bond].image);
         bonds.length.push_back(physics::neck_length(distance, radius[static_cast<std::size_t>(first)],
                                                     radius[static_cast<std::size_t>(second)], sizes.radius[bond]));
     }
@@ -136,11 +136,16 @@ Bonds keep(const State& state, const std::vector<Pair>& pairs, const std::vector
 
 Summary bondify(State& state, const Options& options, const Watch& watch) {
     const Particles& particles = state.particles;
-    const std::vector<Pair> pairs = find_pairs(state.box, particles.position, particles.radius);
-    const std::vector<Overlap> overlaps = overlaps_of(state, pairs);
-    Summary summary{.pairs = pairs.size()};
-    Bonds bonds = options.method == Method::necks ? keep(state, pairs, overlaps, options, summary, watch)
-                                                  : shrink(state, pairs, overlaps, options, summary, watch);
+    const bool necks = options.method == Method::necks;
+    physics::RecordedContacts contacts;
+    if (necks)
+        contacts = physics::recorded_contacts(state);
+    else
+        contacts.pairs = find_pairs(state.box, particles.position, particles.radius);
+    const std::vector<Overlap> overlaps = overlaps_of(state, contacts.pairs);
+    Summary summary{.pairs = overlaps.size()};
+    Bonds bonds = necks ? keep(state, contacts, overlaps, options, summary, watch)
+                        : shrink(state, contacts.pairs, overlaps, options, summary, watch);
     treat_thin(bonds, particles.radius, options, summary);
     summary.bonds = bonds.size();
     summary.mean_diameter = 2.0 * mean(bonds.radius);
@@ -148,6 +153,7 @@ Summary bondify(State& state, const Options& options, const Watch& watch) {
     if (particles.size() > 0)
         summary.coordination_number = 2.0 * static_cast<double>(bonds.size()) / static_cast<double>(particles.size());
     state.bonds = std::move(bonds);
+    state.necks.reset();
     return summary;
 }
 

@@ -50,8 +50,8 @@ struct Summary {
     bool fills = true;            // false: no factor makes the two agree
 };
 
-/// Shrinks the particles of the state and fills its bonds in the order of find_pairs, replacing those it had. Bonds of
-/// Method::necks have the volume zero, since the particles keep all mass.
+/// Shrinks the particles of the state and fills its bonds in the order of find_pairs, replacing those it had, and the necks of its
+/// record, which the bonds of Method::necks take up. Those have the volume zero, since the particles keep all mass.
 /// Throws Error naming both ids where centres lie closer than 2 % of the sum of the radii. Where it throws, Interrupted too, the
 /// state is as it was.
 Summary bondify(State& state, const Options& options, const Watch& watch = {});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "bonding/union_volume.h"
 #include "physics/neck.h"
@@ -17,14 +18,15 @@ constexpr int max_trials = 40;
 
 class NeckSearch {
    public:
-    NeckSearch(const State& state, std::span<const Pair> pairs, const Watch& watch)
+    NeckSearch(const State& state, const physics::RecordedContacts& contacts, const Watch& watch)
         : state_(state),
-          pairs_(pairs),
+          contacts_(contacts),
+          pairs_(contacts.pairs),
           watch_(watch),
           mass_(particle_volume(state.particles)),
-          volume_(state.box, state.particles.position, state.particles.radius, pairs) {
+          volume_(state.box, state.particles.position, state.particles.radius, pairs_) {
         for (const Material& material : state.materials) limit_.push_back(physics::neck_limit(material));
-        sizes_.radius.resize(pairs.size());
+        sizes_.radius.resize(pairs_.size());
         watch_.at(0.3);
     }
 
@@ -32,7 +34,7 @@ class NeckSearch {
     double excess(double factor) {
         sizes_.factor = factor;
         sizes_.limited = 0;
-        for (std::size_t pair = 0; pair < pairs_.size(); ++pair) sizes_.radius[pair] = neck(pairs_[pair], factor);
+        for (std::size_t pair = 0; pair < pairs_.size(); ++pair) sizes_.radius[pair] = neck(pair, factor);
         const VolumeEstimate all = volume_.with_necks(sizes_.radius);
         sizes_.union_volume = all.value;
         sizes_.union_error = all.error;
@@ -66,18 +68,21 @@ class NeckSearch {
     NeckSizes take() { return std::move(sizes_); }
 
    private:
-    double neck(const Pair& pair, double factor) {
+    double neck(std::size_t contact, double factor) {
+        const Pair& pair = pairs_[contact];
         const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
         const auto limit_of = [&](std::size_t row) { return limit_[static_cast<std::size_t>(state_.particles.material[row])]; };
         const double first = state_.particles.radius[i], second = state_.particles.radius[j], smaller = std::min(first, second);
-        const double max = std::min({limit_of(i), limit_of(j), 1.0}) * smaller;
+        double max = std::min({limit_of(i), limit_of(j), 1.0}) * smaller;
+        if (contacts_.recorded[contact]) max = std::max(max, std::min(contacts_.neck[contact], smaller));
         const double distance = pair_vector(state_.box, state_.particles.position, pair).norm();
-        const double radius = physics::neck_radius(factor, distance, first, second, max);
+        const double radius = physics::neck_radius(factor * contacts_.neck[contact], distance, first, second, max);
         sizes_.limited += radius >= max;
         return radius;
     }
 
     const State& state_;
+    const physics::RecordedContacts& contacts_;
     std::span<const Pair> pairs_;
     const Watch& watch_;
     double mass_;  // m3
@@ -89,8 +94,8 @@ class NeckSearch {
 
 }  // namespace
 
-NeckSizes neck_sizes(const State& state, std::span<const Pair> pairs, Necks necks, const Watch& watch) {
-    NeckSearch search(state, pairs, watch);
+NeckSizes neck_sizes(const State& state, const physics::RecordedContacts& contacts, Necks necks, const Watch& watch) {
+    NeckSearch search(state, contacts, watch);
     if (necks == Necks::law)
         search.excess(1.0);
     else

@@ -1,12 +1,11 @@
 // necks.h: the necks of sintered particles as bonds, with one factor on all of them that makes solid and mass agree.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "core/neighbours.h"
 #include "core/state.h"
 #include "core/stop.h"
+#include "physics/recorded_necks.h"
 
 namespace kiln::bonding {
 
@@ -28,9 +27,9 @@ struct NeckSizes {
     bool fills = true;             // false: max_neck_factor leaves the union short of the mass
 };
 
-/// Neck of each pair (overlapping, as find_pairs gives them), a = factor sqrt(4 R* h), at most sin(psi/2) min(R1, R2) where a
-/// material has the dihedral angle psi, and of two angles the one that allows less. The factor of Necks::mass is found to 1e-5 of
-/// the solid volume; the error of that volume comes to it. Throws Interrupted.
-NeckSizes neck_sizes(const State& state, std::span<const Pair> pairs, Necks necks, const Watch& watch = {});
+/// Neck of each contact, factor times that of the state's record or sqrt(4 R* h), at most sin(psi/2) min(R1, R2) where a material
+/// has the dihedral angle psi, and of two angles the one that allows less, or what the record says where that is more. The factor
+/// of Necks::mass is found to 1e-5 of the solid volume; the error of that volume comes to it. Throws Interrupted.
+NeckSizes neck_sizes(const State& state, const physics::RecordedContacts& contacts, Necks necks, const Watch& watch = {});
 
 }  // namespace kiln::bonding

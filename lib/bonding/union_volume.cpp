@@ -188,7 +188,8 @@ UnionVolume::Part UnionVolume::ring(std::size_t row, std::size_t index) const {
     const HalfNeck& half = half_[index];
     const double width = half.end - half.begin;
     if (!(width > 0.0)) return {};
-    const double R2 = square(radius_[row]), volume = pi * square(width) * (half.end + 2.0 * half.begin) / 3.0;
+    const double R = radius_[row], R2 = square(R), gap = std::max(0.0, half.end - R);  // beyond the sphere the neck is a cylinder
+    const double volume = pi * (square(width) * (half.end + 2.0 * half.begin) - square(gap) * (half.end + 2.0 * R)) / 3.0;
     std::vector<Near> reaching;
     find_reaching(row, 0.5 * (half.begin + half.end) * half.direction, std::sqrt(0.25 * square(width) + half.radius2), reaching);
     const Across across(half.direction);
@@ -196,10 +197,11 @@ UnionVolume::Part UnionVolume::ring(std::size_t row, std::size_t index) const {
     for (std::size_t k = 0; k < points_; ++k) {
         const Sample at_point = sample(index * points_ + k);
         const double along = half.begin + width * std::sqrt(at_point.depth);
-        const double sphere2 = R2 - along * along;
+        const double sphere2 = std::max(0.0, R2 - along * along);
         const double section = std::sqrt(sphere2 + at_point.section * (half.radius2 - sphere2));
         const Vec3 point = along * half.direction + across.at(section, at_point.angle);
-        lost.add(0.5 * pi * square(width) * (along + half.begin) * (1.0 - share_of_ring(row, reaching, point)));
+        const double section_over_width = along <= R ? along + half.begin : half.radius2 / (along - half.begin);
+        lost.add(0.5 * pi * square(width) * section_over_width * (1.0 - share_of_ring(row, reaching, point)));
     }
     return {volume - lost.value(), lost.variance()};
 }

@@ -21,7 +21,8 @@ struct VolumeEstimate {
 /// periodic bodies are alike.
 class UnionVolume {
    public:
-    /// position, radius: m. pairs: all pairs that overlap, as find_pairs gives them. All must outlive this.
+    /// position, radius: m. pairs: all pairs that overlap, as find_pairs gives them, and those that a neck joins over a gap. All
+    /// must outlive this.
     UnionVolume(const Box& box, std::span<const Vec3> position, std::span<const double> radius, std::span<const Pair> pairs);
 
     /// Volume of the spheres alone.

@@ -5,14 +5,16 @@
 
 namespace kiln {
 
-ContactStatistics contact_statistics(const Box& box, const Particles& particles, std::span<const Pair> pairs) {
+ContactStatistics contact_statistics(const Box& box, const Particles& particles, std::span<const Pair> pairs,
+                                     std::span<const double> offset) {
     std::size_t contacts = 0;
     double sum = 0.0;
-    for (const Pair& pair : pairs) {
+    for (std::size_t row = 0; row < pairs.size(); ++row) {
+        const Pair& pair = pairs[row];
         const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
         const double radii = particles.radius[i] + particles.radius[j];
-        const double overlap =
-            contact_overlap(particles.radius[i], particles.radius[j], pair_vector(box, particles.position, pair).norm());
+        const double distance = pair_vector(box, particles.position, pair).norm() - (offset.empty() ? 0.0 : offset[row]);
+        const double overlap = contact_overlap(particles.radius[i], particles.radius[j], distance);
         if (overlap < 0.0) continue;
         ++contacts;
         sum += overlap / radii;

@@ -16,8 +16,10 @@ struct ContactStatistics {
     double mean_overlap_ratio;   // h/(r_i + r_j), for equal spheres h/2R, mean of the contacts; zero without contacts
 };
 
-/// Statistics of the pairs that touch; the others are left out.
-ContactStatistics contact_statistics(const Box& box, const Particles& particles, std::span<const Pair> pairs);
+/// Statistics of the pairs that touch; the others are left out. offset: what is added to the overlap of the spheres of each pair,
+/// m; none for zeros.
+ContactStatistics contact_statistics(const Box& box, const Particles& particles, std::span<const Pair> pairs,
+                                     std::span<const double> offset = {});
 
 /// Groups of rows that grow as rows are joined (union-find).
 class Clusters {

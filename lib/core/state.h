@@ -21,6 +21,10 @@ struct Material {
     std::optional<double> diffusion_prefactor;  // delta D_0b, m3/s
     std::optional<double> activation_energy;    // of grain boundary diffusion, J/mol
     std::optional<double> diffusion_parameter;  // Delta, m5/(N s); constant, instead of the four above
+    std::optional<double> surface_prefactor;    // delta_s D_0s of surface diffusion, m3/s
+    std::optional<double> surface_activation;   // J/mol
+    std::optional<double> mobility_prefactor;   // M_0 of grain boundaries, m4/(J s)
+    std::optional<double> mobility_activation;  // J/mol
     std::optional<double> dihedral_angle;       // rad
     std::optional<double> young_modulus;        // Pa
     std::optional<double> poisson_ratio;
@@ -55,6 +59,17 @@ struct Bonds {
     std::size_t size() const { return radius.size(); }
 };
 
+/// Contacts whose neck is not the one that the sintering law gives to the overlap of their spheres, since the grains have changed
+/// in size or surface diffusion has widened the neck. A contact that is not listed has a = sqrt(4 R* h).
+struct Necks {
+    std::vector<std::array<std::int32_t, 2>> pair;  // rows of Particles
+    std::vector<Image> image;                       // added to the position of the pair's second particle
+    std::vector<double> radius;                     // m
+    std::vector<NamedArray> other;
+
+    std::size_t size() const { return radius.size(); }
+};
+
 struct State {
     double time = 0.0;                  // s
     std::optional<double> temperature;  // K
@@ -63,6 +78,7 @@ struct State {
     std::vector<MaterialPair> contacts;
     Particles particles;
     std::optional<Bonds> bonds;
+    std::optional<Necks> necks;
     std::string history = "[]";  // JSON, a list with what each program did; only lib/io looks inside
     std::string other = "{}";    // JSON of unknown keys of the document, carried through
 };

@@ -149,7 +149,7 @@ class Payload {
     std::uint64_t bytes_, left_, position_ = 0;
 };
 
-/// Arrays of one group ("particles" or "bonds"): text data is read, payload arrays are noted in slots.
+/// Arrays of one group ("particles", "bonds" or "necks"): text data is read, payload arrays are noted in slots.
 void read_group(const Json& group, const std::string& name, const std::string& place, std::vector<NamedArray>& arrays,
                 std::vector<Slot>& slots) {
     arrays.reserve(group.size());
@@ -236,6 +236,7 @@ void DocumentReader::read_arrays(Document& document, std::uint64_t bytes) {
     };
     group("particles", document.particles);
     document.has_bonds = group("bonds", document.bonds);
+    document.has_necks = group("necks", document.necks);
     for (const Slot& slot : slots) {
         const std::uint64_t width = value_width(*slot.array);
         if (slot.at > bytes || value_count(slot.array->shape) > (bytes - slot.at) / width)

@@ -16,12 +16,13 @@ struct PlacedError : Error {
     using Error::Error;
 };
 
-/// One document: its JSON header without the arrays, and the arrays under "particles" and "bonds" in the order they stood.
+/// One document: its JSON header without the arrays, and the arrays under "particles", "bonds" and "necks" in the order they
+/// stood.
 struct Document {
     Json header;
     std::vector<NamedArray> particles;
-    std::vector<NamedArray> bonds;
-    bool has_bonds = false;
+    std::vector<NamedArray> bonds, necks;
+    bool has_bonds = false, has_necks = false;
     std::string place;  // "file, document 3", for messages
 };
 
@@ -35,7 +36,7 @@ class DocumentReader {
     /// Throws Error that names the file, the document and what was required: truncation, bad JSON, a repeated key, unknown array
     /// type, shape or size that disagree, a payload longer than the file. Memory taken never runs ahead of the bytes that have
     /// arrived.
-    /// "particles" or "bonds" that are no objects stay in the header: only a dem-state says that they must be arrays.
+    /// "particles", "bonds" or "necks" that are no objects stay in the header: only a dem-state says that they must be arrays.
     bool next(Document& document);
 
    private:

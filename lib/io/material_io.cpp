@@ -10,7 +10,7 @@ namespace kiln::io {
 
 namespace {
 
-/// Where a key of the format lives in the struct. Keys of grain_boundary_diffusion are written with a dot.
+/// Where a key of the format lives in the struct.
 struct Field {
     const char* key;
     std::optional<double> Material::*member;
@@ -27,8 +27,20 @@ constexpr Field fields[] = {
     {"poisson_ratio", &Material::poisson_ratio, -1.0},
 };
 
-constexpr const char* diffusion_key = "grain_boundary_diffusion";
 constexpr const char* assumed_key = "assumed";
+
+/// The same for an object with prefactor and activation_energy.
+struct Activated {
+    const char* key;
+    std::optional<double> Material::*prefactor;
+    std::optional<double> Material::*energy;
+};
+
+constexpr Activated activated[] = {
+    {"grain_boundary_diffusion", &Material::diffusion_prefactor, &Material::activation_energy},
+    {"surface_diffusion", &Material::surface_prefactor, &Material::surface_activation},
+    {"boundary_mobility", &Material::mobility_prefactor, &Material::mobility_activation},
+};
 
 }  // namespace
 
@@ -45,16 +57,17 @@ Material material_from(const Json& json, const std::string& place) {
         material.*field.member = number_from(json[field.key], where + field.key, field.lowest);
         other.erase(field.key);
     }
-    if (json.contains(diffusion_key)) {
-        const Json& diffusion = json[diffusion_key];
-        if (!diffusion.is_object() || !diffusion.contains("prefactor") || !diffusion.contains("activation_energy"))
-            throw Error(where + diffusion_key + " needs prefactor and activation_energy");
-        material.diffusion_prefactor = number_from(diffusion["prefactor"], where + "prefactor", 0.0);
-        material.activation_energy = number_from(diffusion["activation_energy"], where + "activation_energy", 0.0);
-        Json& carried = other[diffusion_key];
+    for (const Activated& field : activated) {
+        if (!json.contains(field.key)) continue;
+        const Json& object = json[field.key];
+        if (!object.is_object() || !object.contains("prefactor") || !object.contains("activation_energy"))
+            throw Error(where + field.key + " needs prefactor and activation_energy");
+        material.*field.prefactor = number_from(object["prefactor"], where + "prefactor", 0.0);
+        material.*field.energy = number_from(object["activation_energy"], where + "activation_energy", 0.0);
+        Json& carried = other[field.key];
         carried.erase("prefactor");
         carried.erase("activation_energy");
-        if (carried.empty()) other.erase(diffusion_key);
+        if (carried.empty()) other.erase(field.key);
     }
     material.other = text_of(other);
     return material;
@@ -83,8 +96,9 @@ Json material_json(const Material& material) {
     Json json{{"name", material.name}};
     for (const Field& field : fields)
         if (material.*field.member) json[field.key] = *(material.*field.member);
-    if (material.diffusion_prefactor && material.activation_energy)
-        json[diffusion_key] = {{"prefactor", *material.diffusion_prefactor}, {"activation_energy", *material.activation_energy}};
+    for (const Activated& field : activated)
+        if (material.*field.prefactor && material.*field.energy)
+            json[field.key] = {{"prefactor", *(material.*field.prefactor)}, {"activation_energy", *(material.*field.energy)}};
     put_back(json, carried_json(material.other, "the unknown keys of material '" + material.name + "'"));
     return json;
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <unordered_set>
+#include <utility>
 
 #include "io/column.h"
 #include "io/json_values.h"
@@ -124,25 +125,37 @@ Particles particles_from(std::vector<NamedArray> arrays, std::size_t materials, 
     return particles;
 }
 
-/// A bond's two ends in the order that does not depend on how it is written: i to j across a face is j to i across the other.
-std::array<int, 5> ends_of(const Bonds& bonds, std::size_t row) {
+/// The two ends of a bond or neck in the order that does not depend on how it is written: i to j across a face is j to i across the
+/// other.
+template <typename Joints>
+std::array<int, 5> ends_of(const Joints& bonds, std::size_t row) {
     const auto [i, j] = bonds.pair[row];
     const Image& image = bonds.image[row];
     const std::array<int, 5> forward{i, j, image[0], image[1], image[2]}, backward{j, i, -image[0], -image[1], -image[2]};
     return std::min(forward, backward);
 }
 
-/// A bond that stands twice would carry twice.
-void check_twice(const Bonds& bonds, const std::string& place) {
+/// A bond or neck that stands twice would carry twice.
+template <typename Joints>
+void check_twice(const Joints& bonds, const char* what, const std::string& place) {
     std::vector<std::pair<std::array<int, 5>, std::size_t>> ends(bonds.size());
     for (std::size_t row = 0; row < ends.size(); ++row) ends[row] = {ends_of(bonds, row), row};
     if (!std::ranges::is_sorted(ends)) std::ranges::sort(ends);
     const auto found = std::ranges::adjacent_find(ends, {}, [](const auto& each) { return each.first; });
     if (found == ends.end()) return;
     const std::size_t first = found->second, again = std::next(found)->second;
-    throw Error(place + ": bonds " + std::to_string(first) + " and " + std::to_string(again) +
+    throw Error(place + ": " + what + " " + std::to_string(first) + " and " + std::to_string(again) +
                 " are one: both join particle rows " + std::to_string(bonds.pair[first][0]) + " and " +
                 std::to_string(bonds.pair[first][1]) + " with the same image");
+}
+
+/// Calls refuse(cause) for ends that are no rows, or the same particle twice.
+template <typename Refuse>
+void check_ends(const std::array<std::int32_t, 2>& pair, const Image& image, std::size_t particles, const Refuse& refuse) {
+    for (const std::int32_t particle : pair)
+        if (particle < 0 || static_cast<std::size_t>(particle) >= particles)
+            refuse("particle row " + std::to_string(particle) + ", there are " + std::to_string(particles));
+    if (pair[0] == pair[1] && image == Image{0, 0, 0}) refuse("particle row " + std::to_string(pair[0]) + " at both ends");
 }
 
 Bonds bonds_from(std::vector<NamedArray> arrays, std::size_t particles, const std::string& place) {
@@ -165,19 +178,40 @@ Bonds bonds_from(std::vector<NamedArray> arrays, std::size_t particles, const st
         const auto refuse = [&](const std::string& cause) {
             throw Error(place + ": bond " + std::to_string(row) + " has " + cause);
         };
-        for (const std::int32_t particle : bonds.pair[row])
-            if (particle < 0 || static_cast<std::size_t>(particle) >= particles)
-                refuse("particle row " + std::to_string(particle) + ", there are " + std::to_string(particles));
-        if (bonds.pair[row][0] == bonds.pair[row][1] && bonds.image[row] == Image{0, 0, 0})
-            refuse("particle row " + std::to_string(bonds.pair[row][0]) + " at both ends");
+        check_ends(bonds.pair[row], bonds.image[row], particles, refuse);
         if (bonds.radius[row] < 0.0) refuse("radius " + shown(bonds.radius[row]) + ", expected none below zero");
         if (default_volume)
             bonds.volume.push_back(std::numbers::pi * bonds.radius[row] * bonds.radius[row] * std::max(0.0, bonds.length[row]));
     }
-    check_twice(bonds, place);
+    check_twice(bonds, "bonds", place);
     check_rows(arrays, where, count, "bonds");
     bonds.other = std::move(arrays);
     return bonds;
+}
+
+Necks necks_from(std::vector<NamedArray> arrays, std::size_t particles, const std::string& place) {
+    Necks necks;
+    const std::string where = place + ": necks.";
+    std::optional<Array> pair = extract(arrays, "pair"), radius = extract(arrays, "radius"), image = extract(arrays, "image");
+    if (!pair || !radius) throw Error(place + ": necks need the arrays pair and radius");
+    const std::size_t count = pair->rows();
+    necks.pair = rows_of<std::array<std::int32_t, 2>, std::int32_t>(std::move(*pair), where + "pair", count);
+    necks.radius = values_of<double>(std::move(*radius), where + "radius", count, 1);
+    if (image)
+        necks.image = rows_of<Image, std::int8_t>(std::move(*image), where + "image", count);
+    else
+        necks.image.assign(count, Image{0, 0, 0});
+    for (std::size_t row = 0; row < count; ++row) {
+        const auto refuse = [&](const std::string& cause) {
+            throw Error(place + ": neck " + std::to_string(row) + " has " + cause);
+        };
+        check_ends(necks.pair[row], necks.image[row], particles, refuse);
+        if (necks.radius[row] < 0.0) refuse("radius " + shown(necks.radius[row]) + ", expected none below zero");
+    }
+    check_twice(necks, "necks", place);
+    check_rows(arrays, where, count, "necks");
+    necks.other = std::move(arrays);
+    return necks;
 }
 
 const Json& list_at(const Json& header, const char* key, const std::string& place) {
@@ -229,10 +263,11 @@ State checked_state(Document document) {
     for (const Json& json : list_at(header, "contacts", place))
         state.contacts.push_back(material_pair_from(json, state.materials, place));
     state.history = text_of(list_at(header, "history", place));
-    for (const char* group : {"particles", "bonds"})
+    for (const char* group : {"particles", "bonds", "necks"})
         if (header.contains(group)) throw Error(place + ": " + group + " is not an object of arrays");
     state.particles = particles_from(std::move(document.particles), state.materials.size(), place);
     if (document.has_bonds) state.bonds = bonds_from(std::move(document.bonds), state.particles.size(), place);
+    if (document.has_necks) state.necks = necks_from(std::move(document.necks), state.particles.size(), place);
     state.other = text_of(unknown_keys(std::move(document.header)));
     return state;
 }
@@ -271,6 +306,26 @@ void move_to_end(std::vector<NamedArray>& target, std::vector<NamedArray>& sourc
     std::move(source.begin(), source.end(), std::back_inserter(target));
 }
 
+void add_bonds(Document& document, Bonds& bonds) {
+    const std::string where = std::string(written) + "bonds.";
+    document.has_bonds = true;
+    document.bonds.push_back(column_of_rows<std::int32_t>("pair", bonds.pair, where));
+    document.bonds.push_back(column_of_rows<std::int8_t>("image", bonds.image, where));
+    document.bonds.push_back(column("radius", std::move(bonds.radius), where));
+    document.bonds.push_back(column("length", std::move(bonds.length), where));
+    document.bonds.push_back(column("volume", std::move(bonds.volume), where));
+    move_to_end(document.bonds, bonds.other);
+}
+
+void add_necks(Document& document, Necks& necks) {
+    const std::string where = std::string(written) + "necks.";
+    document.has_necks = true;
+    document.necks.push_back(column_of_rows<std::int32_t>("pair", necks.pair, where));
+    document.necks.push_back(column_of_rows<std::int8_t>("image", necks.image, where));
+    document.necks.push_back(column("radius", std::move(necks.radius), where));
+    move_to_end(document.necks, necks.other);
+}
+
 }  // namespace
 
 Json history_of(const State& state) {
@@ -297,17 +352,8 @@ Document document_from(State state) {
     document.particles.push_back(column("radius", std::move(particles.radius), of_particles));
     document.particles.push_back(column("material", std::move(particles.material), of_particles));
     move_to_end(document.particles, particles.other);
-    if (!state.bonds) return document;
-
-    Bonds& bonds = *state.bonds;
-    const std::string of_bonds = std::string(written) + "bonds.";
-    document.has_bonds = true;
-    document.bonds.push_back(column_of_rows<std::int32_t>("pair", bonds.pair, of_bonds));
-    document.bonds.push_back(column_of_rows<std::int8_t>("image", bonds.image, of_bonds));
-    document.bonds.push_back(column("radius", std::move(bonds.radius), of_bonds));
-    document.bonds.push_back(column("length", std::move(bonds.length), of_bonds));
-    document.bonds.push_back(column("volume", std::move(bonds.volume), of_bonds));
-    move_to_end(document.bonds, bonds.other);
+    if (state.bonds) add_bonds(document, *state.bonds);
+    if (state.necks) add_necks(document, *state.necks);
     return document;
 }
 

@@ -21,9 +21,10 @@ void put(std::FILE* file, const std::string& name, const void* data, std::size_t
 
 /// Keys of a header that the reader would take for arrays or for their size.
 void check_reserved(const Json& header, const std::string& name) {
-    const bool taken = header.contains("bytes") || (header.contains("particles") && header["particles"].is_object()) ||
-                       (header.contains("bonds") && header["bonds"].is_object());
-    if (taken) throw Error(name + ": the keys particles, bonds and bytes of a document belong to its arrays");
+    bool taken = header.contains("bytes");
+    for (const char* group : {"particles", "bonds", "necks"})
+        taken = taken || (header.contains(group) && header[group].is_object());
+    if (taken) throw Error(name + ": the keys particles, bonds, necks and bytes of a document belong to its arrays");
 }
 
 Json array_head(const Array& array) { return {{"type", type_name(array)}, {"shape", array.shape}}; }
@@ -89,6 +90,7 @@ void write_document(std::FILE* file, const std::string& name, const Document& do
     };
     if (!document.particles.empty()) add_group("particles", document.particles);
     if (document.has_bonds) add_group("bonds", document.bonds);
+    if (document.has_necks) add_group("necks", document.necks);
     if (!payloads.empty()) header["bytes"] = bytes;
 
     std::string line = text_of(header);

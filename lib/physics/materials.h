@@ -21,4 +21,10 @@ double required(const std::optional<double>& value, const Material& material, co
 /// Throws Error that names the missing key.
 double diffusion_parameter_of(const Material& material, double temperature);
 
+/// D_s' = Omega delta_s D_s/(k_B T) of surface diffusion at a temperature (K), m6/(J s). Throws Error that names the missing key.
+double surface_diffusion_of(const Material& material, double temperature);
+
+/// Mobility of grain boundaries at a temperature (K), m4/(J s). Throws Error that names the missing key.
+double boundary_mobility_of(const Material& material, double temperature);
+
 }  // namespace kiln::physics

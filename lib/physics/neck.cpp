@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "physics/bond_geometry.h"
-#include "physics/sinter_contact.h"
 
 namespace kiln::physics {
 
@@ -25,11 +24,8 @@ double meeting_radius(double distance, double radius1, double radius2) {
     return std::sqrt(std::max(0.0, (radius1 - plane) * (radius1 + plane)));
 }
 
-double neck_radius(double factor, double distance, double radius1, double radius2, double max_radius) {
-    const double overlap = radius1 + radius2 - distance;
-    const double coble = factor * std::sqrt(contact_radius_squared(overlap, reduced_radius(radius1, radius2)));
-    const double limited = std::min({coble, max_radius, radius1, radius2});
-    return std::max(limited, meeting_radius(distance, radius1, radius2));
+double neck_radius(double neck, double distance, double radius1, double radius2, double max_radius) {
+    return std::max(std::min({neck, max_radius, radius1, radius2}), meeting_radius(distance, radius1, radius2));
 }
 
 double neck_length(double distance, double radius1, double radius2, double neck_radius) {

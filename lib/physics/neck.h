@@ -20,9 +20,9 @@ double meeting_plane(double distance, double radius1, double radius2);
 /// into the other beyond its centre.
 double meeting_radius(double distance, double radius1, double radius2);
 
-/// Neck radius, m: factor times that of the sintering law, a = sqrt(4 R* h) (Coble), no more than max_radius (m), no less than the
-/// circle in which the spheres meet, and never more than the smaller radius.
-double neck_radius(double factor, double distance, double radius1, double radius2, double max_radius);
+/// Neck radius, m, where a law or a record says `neck` (m): no more than max_radius (m), no less than the circle in which the
+/// spheres meet, and never more than the smaller radius.
+double neck_radius(double neck, double distance, double radius1, double radius2, double max_radius);
 
 /// Neck length, m: L = d - sqrt(R1^2 - a^2) - sqrt(R2^2 - a^2); zero where the spheres meet in the circle of that radius or in a
 /// wider one.

@@ -193,9 +193,9 @@ TEST_CASE("what would make a stream that nobody can read is not written") {
     document.header = {{"a", {{"b", {1.0, nan}}}}};
     CHECK(refusal(document, false) == "stream: a.b.1 is not a finite number");
     document.header = {{"bytes", 5}};
-    CHECK(refusal(document, true) == "stream: the keys particles, bonds and bytes of a document belong to its arrays");
+    CHECK(refusal(document, true) == "stream: the keys particles, bonds, necks and bytes of a document belong to its arrays");
     document.header = {{"bonds", Json::object()}};
-    CHECK(refusal(document, true) == "stream: the keys particles, bonds and bytes of a document belong to its arrays");
+    CHECK(refusal(document, true) == "stream: the keys particles, bonds, necks and bytes of a document belong to its arrays");
     document.header = Json::object();
     document.particles = {array("stress", {3}, std::vector<float>{1.0f, 2.0f, -INFINITY})};
     CHECK(refusal(document, true) == "stream: particles.stress: value 2 is not finite and text cannot hold it");

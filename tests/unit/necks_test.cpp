@@ -78,17 +78,23 @@ double counted_volume(const State& state, const std::vector<Pair>& pairs, const 
     return static_cast<double>(std::ranges::count(solid, 1)) * step * step * step;
 }
 
+/// A factor times the radius of the sintering law, m.
+double coble(double factor, double distance, double radius1, double radius2) {
+    const double overlap = radius1 + radius2 - distance;
+    return factor * std::sqrt(physics::contact_radius_squared(overlap, physics::reduced_radius(radius1, radius2)));
+}
+
 }  // namespace
 
 TEST_CASE("necks: Coble's radius times a factor, within the limit, no narrower than where the spheres meet") {
     const double d = 1.9, h = 0.1;
-    CHECK(physics::neck_radius(1.0, d, 1.0, 1.0, 1.0) == relative(std::sqrt(2.0 * h), 1e-12));
-    CHECK(physics::neck_radius(1.2, d, 1.0, 1.0, 1.0) == relative(1.2 * std::sqrt(2.0 * h), 1e-12));
-    CHECK(physics::neck_radius(1.0, 2.9, 1.0, 2.0, 1.0) == relative(std::sqrt(4.0 * 2.0 / 3.0 * h), 1e-12));
-    CHECK(physics::neck_radius(1.0, d, 1.0, 1.0, 0.4) == 0.4);
+    CHECK(physics::neck_radius(coble(1.0, d, 1.0, 1.0), d, 1.0, 1.0, 1.0) == relative(std::sqrt(2.0 * h), 1e-12));
+    CHECK(physics::neck_radius(coble(1.2, d, 1.0, 1.0), d, 1.0, 1.0, 1.0) == relative(1.2 * std::sqrt(2.0 * h), 1e-12));
+    CHECK(physics::neck_radius(coble(1.0, 2.9, 1.0, 2.0), 2.9, 1.0, 2.0, 1.0) == relative(std::sqrt(4.0 * 2.0 / 3.0 * h), 1e-12));
+    CHECK(physics::neck_radius(coble(1.0, d, 1.0, 1.0), d, 1.0, 1.0, 0.4) == 0.4);
     const double circle = std::sqrt(1.0 - d * d / 4.0);
     CHECK(physics::meeting_radius(d, 1.0, 1.0) == relative(circle, 1e-12));
-    CHECK(physics::neck_radius(0.1, d, 1.0, 1.0, 1.0) == relative(circle, 1e-12));
+    CHECK(physics::neck_radius(coble(0.1, d, 1.0, 1.0), d, 1.0, 1.0, 1.0) == relative(circle, 1e-12));
     CHECK(physics::neck_length(d, 1.0, 1.0, circle) == 0.0);
     CHECK(physics::neck_length(d, 1.0, 1.0, 0.45) == relative(d - 2.0 * std::sqrt(1.0 - 0.45 * 0.45), 1e-12));
     // The circle of two unequal spheres, by Pythagoras from both.
@@ -97,7 +103,7 @@ TEST_CASE("necks: Coble's radius times a factor, within the limit, no narrower t
     CHECK((2.6 - plane) * (2.6 - plane) + meeting * meeting == relative(4.0, 1e-12));
     CHECK(physics::meeting_radius(3.0, 1.0, 2.0) == 0.0);
     // A sphere that is sunk into another beyond its centre meets it as a whole.
-    CHECK(physics::neck_radius(1.0, 1.5, 1.0, 2.0, 0.8) == 1.0);
+    CHECK(physics::neck_radius(coble(1.0, 1.5, 1.0, 2.0), 1.5, 1.0, 2.0, 0.8) == 1.0);
     CHECK(physics::neck_length(1.5, 1.0, 2.0, 1.0) == 0.0);
     Material material;
     CHECK(std::isinf(physics::neck_limit(material)));
@@ -136,7 +142,7 @@ TEST_CASE("necks: a sphere inside another adds nothing, and one sunk in beyond i
         const State state = make_state({Vec3(5, 5, 5), Vec3(5 + d, 5, 5)}, {2.0, 1.0}, 10.0, false);
         const std::vector<Pair> pairs = pairs_of(state);
         UnionVolume volume = volume_of(state, pairs);
-        const VolumeEstimate all = volume.with_necks(std::vector{physics::neck_radius(1.0, d, 2.0, 1.0, 1.0)});
+        const VolumeEstimate all = volume.with_necks(std::vector{physics::neck_radius(coble(1.0, d, 2.0, 1.0), d, 2.0, 1.0, 1.0)});
         CHECK(all.value == volume.spheres().value);
         if (d + 1.0 <= 2.0) CHECK(all.value == relative(sphere_volume(2.0), 1e-12));
     }
@@ -151,7 +157,7 @@ TEST_CASE("necks: where spheres and necks share space, points find the same as a
             const double r1 = state.particles.radius[static_cast<std::size_t>(pair.i)];
             const double r2 = state.particles.radius[static_cast<std::size_t>(pair.j)];
             const double d = pair_vector(state.box, state.particles.position, pair).norm();
-            neck.push_back(physics::neck_radius(1.3, d, r1, r2, 0.9 * std::min(r1, r2)));
+            neck.push_back(physics::neck_radius(coble(1.3, d, r1, r2), d, r1, r2, 0.9 * std::min(r1, r2)));
         }
         UnionVolume volume = volume_of(state, pairs);
         const VolumeEstimate all = volume.with_necks(neck);
@@ -185,14 +191,14 @@ TEST_CASE("necks: one factor makes the union as large as the mass; the law's own
     const State state = make_packing(5, 3, 2.75);
     const std::vector<Pair> pairs = pairs_of(state);
     const double mass = particle_volume(state.particles);
-    const NeckSizes by_mass = neck_sizes(state, pairs, Necks::mass);
+    const NeckSizes by_mass = neck_sizes(state, physics::recorded_contacts(state), bonding::Necks::mass);
     CHECK(by_mass.fills);
     CHECK(std::abs(by_mass.union_volume / mass - 1.0) <= 1e-5);
     CHECK(by_mass.union_error < 3e-4 * mass);
     UnionVolume volume = volume_of(state, pairs);
     CHECK(volume.with_necks(by_mass.radius).value == by_mass.union_volume);
 
-    const NeckSizes law = neck_sizes(state, pairs, Necks::law);
+    const NeckSizes law = neck_sizes(state, physics::recorded_contacts(state), bonding::Necks::law);
     CHECK(law.factor == 1.0);
     std::size_t checked = 0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -213,7 +219,7 @@ TEST_CASE("necks: the dihedral angle limits them, and where no factor fills the 
     state.materials.front().dihedral_angle = pi / 3.0;  // a/r at most 1/2
     state.materials.emplace_back();
     for (std::size_t row = 0; row < state.particles.size(); row += 3) state.particles.material[row] = 1;
-    const NeckSizes sizes = neck_sizes(state, pairs, Necks::mass);
+    const NeckSizes sizes = neck_sizes(state, physics::recorded_contacts(state), bonding::Necks::mass);
     CHECK_FALSE(sizes.fills);
     CHECK(sizes.factor == max_neck_factor);
     CHECK(sizes.union_volume < particle_volume(state.particles));

@@ -41,6 +41,12 @@ State rich_state() {
                              {"a", {{2}, std::vector<std::uint8_t>{7, 8}}}};
     state.bonds = Bonds{{{{0, 1}}, {{1, 1}}}, {{{0, -1, 127}}, {{1, 0, 0}}}, {0.1, 0.0}, {1.5, -0.25}, {0.5, 0.0}, {}};
     state.bonds->other = {{"force", {{2, 1}, std::vector<double>{1e-9, -0.0}}}};
+    state.necks = Necks{{{{1, 0}}, {{1, 1}}}, {{{0, -1, 5}}, {{1, 0, 0}}}, {0.25, 0.0}, {}};
+    state.necks->other = {{"age", {{2}, std::vector<std::int32_t>{3, 4}}}};
+    state.materials[1].surface_prefactor = 3e-11;
+    state.materials[1].surface_activation = 3e5;
+    state.materials[1].mobility_prefactor = 0.01;
+    state.materials[1].mobility_activation = 4.4e5;
     state.history = R"([{"tool":"x","summary":{"b":1,"a":2}}])";
     state.other = R"({"box":{"comment":"wet"},"contacts":[{"note":[1]}],"zoo":1,"ark":{"b":null,"a":1}})";
     return state;
@@ -73,6 +79,13 @@ void check_same(const State& a, const State& b) {
         CHECK(a.bonds->length == b.bonds->length);
         CHECK(a.bonds->volume == b.bonds->volume);
         CHECK(a.bonds->other.size() == b.bonds->other.size());
+    }
+    REQUIRE(a.necks.has_value() == b.necks.has_value());
+    if (a.necks) {
+        CHECK(a.necks->pair == b.necks->pair);
+        CHECK(a.necks->image == b.necks->image);
+        CHECK(a.necks->radius == b.necks->radius);
+        CHECK(a.necks->other.size() == b.necks->other.size());
     }
     CHECK(a.history == b.history);
     CHECK(a.other == b.other);
@@ -116,6 +129,29 @@ TEST_CASE("a state comes back whole, and writing it again gives the same bytes")
         check_same(back, rich_state());
         CHECK(bytes_of(io::document_from(back), text) == bytes);
     }
+}
+
+TEST_CASE("necks of a record: images are optional, and what is none is refused with its row") {
+    const std::string spheres = two_spheres;
+    const auto with = [&](const std::string& necks) {
+        return spheres.substr(0, spheres.size() - 1) + R"(,"necks":)" + necks + "}";
+    };
+    const auto necks = [&](const std::string& pairs, const std::string& radii, std::size_t count) {
+        const std::string rows = std::to_string(count);
+        return with(R"({"pair":{"type":"i4","shape":[)" + rows + R"(,2],"data":)" + pairs +
+                    R"(},"radius":{"type":"f8","shape":[)" + rows + R"(],"data":)" + radii + "}}");
+    };
+    const State state = state_of(necks("[0,1]", "[0.125]", 1));
+    REQUIRE(state.necks);
+    CHECK(state.necks->radius == std::vector{0.125});
+    CHECK(state.necks->image == std::vector{Image{0, 0, 0}});
+    const auto refusal = [&](const std::string& line) { return sentence_of([&] { state_of(line); }); };
+    CHECK(refusal(necks("[0,2]", "[0.1]", 1)).ends_with("neck 0 has particle row 2, there are 2"));
+    CHECK(refusal(necks("[1,1]", "[0.1]", 1)).ends_with("neck 0 has particle row 1 at both ends"));
+    CHECK(refusal(necks("[0,1]", "[-0.1]", 1)).ends_with("neck 0 has radius -0.1, expected none below zero"));
+    CHECK(refusal(necks("[0,1,1,0]", "[0.1,0.2]", 2)).ends_with("necks 0 and 1 are one: both join particle rows 0 and 1 with the same image"));
+    CHECK(refusal(with("3")).ends_with("necks is not an object of arrays"));
+    CHECK(refusal(with(R"({"pair":{"type":"i4","shape":[0,2],"data":[]}})")).ends_with("necks need the arrays pair and radius"));
 }
 
 TEST_CASE("a state without particles and one with an empty bond list come back") {

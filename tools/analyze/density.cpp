@@ -25,6 +25,11 @@ constexpr const char* density_footer =
     "  mean_overlap_ratio        h/2R, or h/(r1 + r2) of unequal spheres; 0 for bonds of shrunk particles\n"
     "  overlap_ratio, diameter   {mean, standard_deviation, minimum, maximum}, diameter in m and with\n"
     "                            {by_number, by_volume} {d10, d50, d90}\n"
+    "  mean_grain_diameter       mean diameter of the particles, m\n"
+    "  mean_intercept            mean length of random lines in them, (4/3) sum r^3/sum r^2, m\n"
+    "  neck_coverage             share of a particle's surface that is neck, sum a^2/(4 r^2), mean of all\n"
+    "  vanished_grains, moved_by_surface, moved_by_boundary (m3)\n"
+    "                            what coarsening did in the last run of sinter, where there was any\n"
     "  clusters                  groups that contacts connect, single particles included\n"
     "  largest_cluster_fraction  of the particles\n"
     "  isolated                  particles without a contact\n"
@@ -54,7 +59,10 @@ const std::vector<Column> density_columns{{"time", "time", "s"},
                                   {"coordination_number", "coordination number", ""},
                                   {"mean_overlap_ratio", "mean overlap h/2R", ""},
                                   {"largest_cluster_fraction", "largest cluster", ""},
-                                  {"fabric_anisotropy", "anisotropy", ""}};
+                                  {"fabric_anisotropy", "anisotropy", ""},
+                                  {"mean_grain_diameter", "mean diameter", "m"},
+                                  {"mean_intercept", "mean intercept", "m"},
+                                  {"neck_coverage", "coverage", ""}};
 
 struct DensityOptions {
     analysis::Measure measure = analysis::Measure::automatic;
@@ -113,6 +121,20 @@ void add_contacts(Json& result, const State& state, std::size_t bins) {
     if (bins > 0) result["overlap_histogram"] = histogram_json(analysis::histogram_of(overlaps, bins, 0.0));
 }
 
+void add_grains(Json& result, const State& state) {
+    const physics::GrainSize size = analysis::grain_size(state);
+    result["mean_grain_diameter"] = size.mean_diameter;
+    result["mean_intercept"] = size.mean_intercept;
+    result["neck_coverage"] = size.coverage;
+    const Json history = io::history_of(state);
+    for (auto entry = history.rbegin(); entry != history.rend(); ++entry) {
+        if (!entry->is_object() || entry->value("tool", Json()) != "sinter" || !entry->contains("summary")) continue;
+        for (const char* key : {"vanished_grains", "moved_by_surface", "moved_by_boundary"})
+            if ((*entry)["summary"].contains(key)) result[key] = (*entry)["summary"][key];
+        break;
+    }
+}
+
 Json density_of(const State& state, const DensityOptions& options) {
     const analysis::Density density = analysis::measured_density(state, options.measure, options.probe);
     Json result{{"format", "dem-density"},
@@ -124,6 +146,7 @@ Json density_of(const State& state, const DensityOptions& options) {
     if (density.measure == "envelope")
         result["probe_radius"] = options.probe > 0.0 ? options.probe : analysis::mean_diameter(state.particles);
     add_contacts(result, state, options.bins);
+    add_grains(result, state);
     std::vector<double> diameters;
     for (const double radius : state.particles.radius) diameters.push_back(2.0 * radius);
     result["diameter"] = spread_json(analysis::spread_of(diameters));
