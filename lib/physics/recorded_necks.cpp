@@ -3,15 +3,12 @@
 
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 #include "physics/sinter_contact.h"
 
 namespace kiln::physics {
 
 namespace {
-
-using Key = std::tuple<std::int32_t, std::int32_t, Image>;
 
 /// A pair seen from the particle, or the image, that find_pairs takes for the first.
 Pair in_order(const std::array<std::int32_t, 2>& rows, Image image) {
@@ -21,8 +18,6 @@ Pair in_order(const std::array<std::int32_t, 2>& rows, Image image) {
     return {rows[1], rows[0], image};
 }
 
-Key key_of(const Pair& pair) { return {pair.i, pair.j, pair.image}; }
-
 }  // namespace
 
 RecordedContacts recorded_contacts(const State& state) {
@@ -31,7 +26,7 @@ RecordedContacts recorded_contacts(const State& state) {
     std::vector<std::pair<Pair, double>> record;
     for (std::size_t row = 0; state.necks && row < state.necks->size(); ++row)
         record.emplace_back(in_order(state.necks->pair[row], state.necks->image[row]), state.necks->radius[row]);
-    std::ranges::sort(record, {}, [](const auto& neck) { return key_of(neck.first); });
+    std::ranges::sort(record, {}, &std::pair<Pair, double>::first);
 
     RecordedContacts contacts;
     const auto add = [&](const Pair& pair, const double* neck) {
@@ -50,8 +45,8 @@ RecordedContacts recorded_contacts(const State& state) {
         ++neck;
     };
     for (const Pair& pair : found) {
-        while (neck != record.end() && key_of(neck->first) < key_of(pair)) add_record();
-        if (neck != record.end() && key_of(neck->first) == key_of(pair))
+        while (neck != record.end() && neck->first < pair) add_record();
+        if (neck != record.end() && neck->first == pair)
             add_record();
         else
             add(pair, nullptr);

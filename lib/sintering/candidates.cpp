@@ -6,19 +6,22 @@
 #include <cstdint>
 #include <utility>
 
+#include "physics/coarsening.h"
+
 namespace kiln::sintering {
 
 namespace {
 
 constexpr double min_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
 constexpr double guess_margin = 2.0;   // of the approach that is guessed, that makes a candidate
+constexpr double limit_stiffness = 10.0;  // of the spring at a limit, over the stiffness of the contact there
 constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
 
 }  // namespace
 
-double Candidates::overlap(const Pair& pair) const {
-    const auto [first, second] = body_.radii(pair);
-    return contact_overlap(first, second, body_.vector(pair).norm());
+double Candidates::max_neck(std::size_t kind, double first, double second) const {
+    const auto [small, large] = std::minmax(first, second);
+    return coarsens_ ? physics::equilibrium_neck(small, large, kinetics_.neck_limit(kind)) : kinetics_.neck_limit(kind) * small;
 }
 
 double Candidates::end_overlap(const Pair& pair, const Motion& motion) const {
@@ -26,7 +29,7 @@ double Candidates::end_overlap(const Pair& pair, const Motion& motion) const {
     const Vec3 vector = body_.vector(pair);
     const Eigen::Map<const Vec3> a(&motion.displacement[3 * static_cast<std::size_t>(pair.i)]);
     const Eigen::Map<const Vec3> b(&motion.displacement[3 * static_cast<std::size_t>(pair.j)]);
-    return first + second - (vector + b - a + motion.strain.cwiseProduct(vector)).norm();
+    return first + second - (vector + b - a + motion.strain.cwiseProduct(vector)).norm() + body_.offset(pair);
 }
 
 PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diffusion, double unit) const {
@@ -35,14 +38,17 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
     PairStep step{};
     step.vector = step.branch = body_.vector(pair);
     step.distance = step.vector.norm();
-    step.overlap = contact_overlap(first, second, step.distance);
+    step.overlap = contact_overlap(first, second, step.distance - body_.offset(pair));
     step.reduced_radius = physics::reduced_radius(first, second);
     if (kinetics_.rigid(kind)) {
         step.limit = std::max(0.0, -step.overlap);
         return step;
     }
-    const double most = physics::overlap_of_neck(kinetics_.neck_limit(kind) * std::min(first, second), step.reduced_radius);
+    const double most = physics::overlap_of_neck(max_neck(kind, first, second), step.reduced_radius);
     step.limit = std::max(0.0, most - step.overlap);
+    // Of grains that differ a lot, the stiffness of a contact may be hundreds of times that of most.
+    if (coarsens_) step.spring = limit_stiffness * unit * physics::normal_viscosity_factor(constants_, step.reduced_radius) /
+                                 diffusion[kind] * physics::viscosity_shape(std::max(most, step.overlap));
     step.slowness = *std::ranges::max_element(diffusion) / diffusion[kind];
     step.force = unit * physics::sintering_force(constants_, step.reduced_radius, kinetics_.surface_energy(kind));
     step.cubic = unit * physics::normal_viscosity_factor(constants_, step.reduced_radius) / diffusion[kind];
@@ -53,7 +59,7 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
 double Candidates::max_isolated_approach(const std::vector<double>& diffusion) const {
     double most = 0.0;
     for (const Pair& pair : body_.pairs()) {
-        const double start = overlap(pair);
+        const double start = body_.overlap(pair);
         const std::size_t kind = kinetics_.row(body_.particles(), pair);
         if (start < 0.0 || kinetics_.rigid(kind)) continue;
         const PairStep step = pair_step(pair, diffusion, 1.0);
@@ -79,7 +85,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     std::vector<std::uint8_t> kind(list.size());  // 0 out, 1 apart, 2 touching, 3 sticking
     for_rows(list.size(), [&](std::size_t row) {
         const Pair& pair = list[row];
-        const double start = overlap(pair);
+        const double start = body_.overlap(pair);
         if (sticks(body_, kinetics_, pair))
             kind[row] = 3;
         else if (start >= 0.0)

@@ -14,8 +14,10 @@ namespace kiln::sintering {
 class Candidates {
    public:
     /// Refers to packing and kinetics as long as it lives.
-    Candidates(const SinteringBody& packing, const Kinetics& kinetics, const physics::ContactConstants& constants)
-        : body_(packing), kinetics_(kinetics), constants_(constants) {}
+    /// coarsens: necks end growing where unequal spheres are in equilibrium, and not at sin(psi/2) of the smaller radius.
+    Candidates(const SinteringBody& packing, const Kinetics& kinetics, const physics::ContactConstants& constants,
+               bool coarsens = false)
+        : body_(packing), kinetics_(kinetics), constants_(constants), coarsens_(coarsens) {}
 
     /// Chooses from the packing's list by two motions that the step may turn out to make.
     /// diffusion: integral of Delta over the step for each pair of materials, m5/N. keep: what was chosen last stays chosen, so
@@ -41,12 +43,13 @@ class Candidates {
     double unit() const { return unit_; }                                // of the steps' forces: what 1 N is in it
 
    private:
-    double overlap(const Pair& pair) const;                               // m
+    double max_neck(std::size_t kind, double first, double second) const;  // m
     double end_overlap(const Pair& pair, const Motion& motion) const;     // m, after the motion
 
     const SinteringBody& body_;
     const Kinetics& kinetics_;
     physics::ContactConstants constants_;
+    bool coarsens_;
     std::vector<Pair> pairs_, chosen_, left_out_, touching_, sticking_;
     int lists_ = 0;  // of the packing, when pairs were chosen
     std::vector<PairStep> steps_;

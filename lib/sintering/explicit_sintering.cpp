@@ -23,6 +23,7 @@ constexpr std::size_t chunk = 1024;        // particles whose sums are formed to
 }  // namespace
 
 ExplicitSintering::ExplicitSintering(State state, const SinteringSettings& settings) : SinteringMethod(std::move(state), settings) {
+    if (settings_.coarsening.any()) throw Error("the explicit method has no coarsening");
     if (kinetics_.any_rigid()) throw Error("the explicit method has no law for pairs of materials that do not diffuse");
     const State& working = body_.working();
     for (std::size_t kind = 0; kind < working.materials.size() * working.materials.size(); ++kind)
@@ -60,7 +61,7 @@ ExplicitSintering::PairForce ExplicitSintering::pair_force(const Pair& pair, con
     const Vec3 vector = body_.vector(pair);
     const double distance = vector.norm();
     const auto [first, second] = body_.radii(pair);
-    const double overlap = contact_overlap(first, second, distance);
+    const double overlap = contact_overlap(first, second, distance - body_.offset(pair));
     PairForce result;
     if (overlap < 0.0) return result;
     const Vec3 normal = vector / distance;

@@ -26,6 +26,11 @@ constexpr double first_order_fraction = 0.1;   // of it, for first-order steps, 
 constexpr double harmless_fraction = 0.03;     // of the tolerance, change of density in a first-order step that needs no control
 constexpr double invisible_approach = 1e-20;  // of the mean radius; the rounding of a position is 1e-16 and more of it, and no
                                               // force in a packing is thousands of times that of an isolated pair
+constexpr double splitting_factor = 0.125;  // Strang's relative error of a step's change of density over the square of the change
+                                            // of its rate by coarsening: 1/24 where nothing else changes it
+constexpr double loose_limit = 1e-4;  // of the reduced radius, to which limits of necks are met that coarsening moves by far more
+constexpr double tightening = 0.2;    // of the tolerance, from one pass over them to the next
+constexpr double harmless_splitting = 1e-3;  // of the tolerance, change of density by that in a step that needs no control
 constexpr double same_time = 1e-12;         // relative: the rounding of the time that is left of a schedule
 constexpr std::size_t max_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
@@ -37,7 +42,9 @@ constexpr int max_rejections = 20;         // of one step
 }  // namespace
 
 ImplicitSintering::ImplicitSintering(State state, const SinteringSettings& settings)
-    : SinteringMethod(std::move(state), settings), candidates_(body_, kinetics_, settings_.constants) {
+    : SinteringMethod(std::move(state), settings),
+      candidates_(body_, kinetics_, settings_.constants, settings_.coarsening.any()) {
+    if (settings_.coarsening.any()) coarsening_.emplace(body_.working(), settings_.coarsening);
     next_duration_ = first_duration();
 }
 
@@ -116,6 +123,9 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
 }
 
 ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& guess) {
+    Trial trial;
+    trial.until = until;
+    coarsen_before(until, trial);
     body_.cover(guess, guess_margin);
     ++attempts_;
     const std::vector<double> diffusion = kinetics_.diffusion_over(body_.time(), until);
@@ -126,12 +136,12 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_fraction : first_order_fraction),
                                 .second_tolerance = closely,
+                                .limit_accuracy = coarsening_ ? loose_limit : StepSettings().limit_accuracy,
+                                .limit_tightening = coarsening_ ? tightening : StepSettings().limit_tightening,
                                 .balance_first = !settings_.second_order,
                                 .stop = settings_.stop};
     Problem problem{diffusion, clusters, settings, std::nullopt};
     problem.take(body_, candidates_);
-    Trial trial;
-    trial.until = until;
     trial.motion = trial.first_order = guess;
     solve(problem, false, trial);
     trial.motion = trial.first_order;
@@ -185,11 +195,19 @@ double ImplicitSintering::step_error(const Trial& trial) const {
     return trial.difference * (settings_.second_order ? third_order_factor * std::abs(trial.log_density) : 1.0);
 }
 
+double ImplicitSintering::splitting_error(double log_density, double rate_change) const {
+    const double error = splitting_factor * rate_change * rate_change;
+    return error * std::abs(log_density) > harmless_splitting * settings_.tolerance ? error : 0.0;
+}
+
 double ImplicitSintering::length_factor_for(const Trial& trial) const {
-    if (trial.difference == 0.0) return std::numeric_limits<double>::infinity();
-    const double fraction =
-        settings_.tolerance / typical_log_range / trial.difference;  // of a step, over its change of log density
+    const double splitting = splitting_error(trial.log_density, 2.0 * trial.rate_change);
+    if (trial.difference == 0.0 && splitting == 0.0) return std::numeric_limits<double>::infinity();
+    const double allowed = settings_.tolerance / typical_log_range;  // of a step, over its change of log density
+    if (settings_.second_order && splitting > 0.0) return std::sqrt(allowed / (third_order_factor * trial.difference + splitting));
+    const double fraction = allowed / trial.difference;
     if (settings_.second_order) return std::sqrt(fraction / third_order_factor);
+    if (splitting > 0.0) return std::min(1.0, std::sqrt(allowed / splitting));
     return fraction * std::max(std::abs(trial.log_density), harmless_fraction * settings_.tolerance);
 }
 
@@ -237,12 +255,17 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
     const double start = body_.time();
     double duration = 0.0;
     Trial trial;
-    if (nothing_moves(start, latest_time)) {
-        trial.until = latest_time;
-        trial.motion = trial.first_order = Motion(body_.size());
-    } else {
-        trial = accepted_attempt(duration, latest_time);
-        if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
+    if (coarsening_) start_ = body_.grains();
+    try {
+        if (nothing_moves(start, latest_time)) {
+            trial = rest(latest_time);
+        } else {
+            trial = accepted_attempt(duration, latest_time);
+            if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
+        }
+    } catch (...) {
+        if (coarsening_) body_.set_grains(start_);  // the state stays as it was before the step
+        throw;
     }
     idle_steps_ = std::abs(trial.log_density) < idle ? idle_steps_ + 1 : 0;
     if (idle_steps_ > max_idle_steps && std::isinf(latest_time))
@@ -251,6 +274,77 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
     StepRecord record = finish(trial, duration);
     record.duration = record.time - start;
     return record;
+}
+
+ImplicitSintering::Trial ImplicitSintering::rest(double until) {
+    Trial trial;
+    trial.until = until;
+    trial.motion = trial.first_order = Motion(body_.size());
+    coarsen_before(until, trial);
+    return trial;
+}
+
+/// Rate of densification, up to a constant, of a body whose particles all follow the box.
+double ImplicitSintering::affine_rate(double from, double until) const {
+    const std::vector<double> diffusion = kinetics_.diffusion_over(from, until);
+    double driving = 0.0, viscosity = 0.0;
+    for (const Pair& pair : body_.pairs()) {
+        const PairStep step = candidates_.pair_step(pair, diffusion, 1.0);
+        if (step.overlap < 0.0 || !(step.cubic > 0.0)) continue;
+        driving += step.force * step.distance;
+        viscosity += step.cubic * physics::viscosity_shape(step.overlap) * step.distance * step.distance;
+    }
+    return viscosity > 0.0 ? driving / viscosity : 0.0;
+}
+
+void ImplicitSintering::coarsen(double from, double until) {
+    Coarsening::Change change = coarsening_->over(body_, kinetics_, from, until);
+    body_.set_grains(change.grains);
+    coarsened_.surface += change.surface;
+    coarsened_.boundary += change.boundary;
+    coarsened_.substeps += change.substeps;
+}
+
+/// The first half of coarsening, of Strang's splitting: from the start of the step to its middle, as sintering counts time.
+void ImplicitSintering::coarsen_before(double until, Trial& trial) {
+    if (!coarsening_) return;
+    body_.set_grains(start_);
+    coarsened_ = {};
+    const double from = body_.time(), equivalent = kinetics_.equivalent(from, until);
+    trial.middle = equivalent > 0.0 ? kinetics_.after(from, 0.5 * equivalent) : 0.5 * (from + until);
+    trial.middle = std::clamp(trial.middle, from, until);
+    const double before = affine_rate(from, until);
+    coarsen(from, trial.middle);
+    const double after = affine_rate(from, until);
+    trial.rate_change = before > 0.0 && after > 0.0 ? std::log(after / before) : 0.0;
+}
+
+/// The second half, after the motion. Grains that have vanished leave the body, and all that has a row a particle.
+void ImplicitSintering::coarsen_after(const Trial& trial, StepRecord& record) {
+    const double from = body_.time(), before = affine_rate(trial.middle, from);
+    coarsen(trial.middle, from);
+    const double after = affine_rate(trial.middle, from);
+    const double rate_change = trial.rate_change + (before > 0.0 && after > 0.0 ? std::log(after / before) : 0.0);
+    error_ += splitting_error(trial.log_density, rate_change) * std::abs(trial.log_density);
+    CoarseningRecord& coarsening = record.coarsening.emplace();
+    for (std::size_t row = 0; row < body_.size(); ++row)
+        if (body_.particles().radius[row] == 0.0) coarsening.vanished.push_back(body_.particles().id[row]);
+    std::ranges::sort(coarsening.vanished);
+    const std::vector<std::int32_t> rows = body_.remove_vanished();
+    if (!coarsening.vanished.empty() && last_motion_.displacement.size() > 3 * rows.size()) {
+        for (std::size_t row = 0; row < rows.size(); ++row)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                last_motion_.displacement[3 * row + axis] =
+                    last_motion_.displacement[3 * static_cast<std::size_t>(rows[row]) + axis];
+        last_motion_.displacement.resize(3 * rows.size());
+    }
+    coarsening.surface = moved_surface_ += coarsened_.surface;
+    coarsening.boundary = moved_boundary_ += coarsened_.boundary;
+    coarsening.vanished_grains = vanished_ += coarsening.vanished.size();
+    coarsening.substeps = coarsened_.substeps;
+    std::vector<double> overlap(body_.pairs().size());
+    for_rows(overlap.size(), [&](std::size_t row) { overlap[row] = body_.overlap(body_.pairs()[row]); });
+    coarsening.size = physics::grain_size(body_.particles().radius, body_.pairs(), overlap);
 }
 
 StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
@@ -263,6 +357,7 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
     }
     error_ += step_error(trial);
     StepRecord record;
+    if (coarsening_) coarsen_after(trial, record);
     record.time = body_.time();
     record.temperature = *body_.working().temperature;
     record.relative_density = body_.density();
@@ -279,13 +374,16 @@ StepRecord ImplicitSintering::finish(const Trial& trial, double duration) {
 }
 
 Numbers ImplicitSintering::numbers() const {
-    return {{"last_rate", {last_rate_}},
-            {"rate_before", {rate_before_}},
-            {"last_duration", {last_duration_}},
-            {"next_duration", {next_duration_}},
-            {"density_error", {error_}},
-            {"idle_steps", {static_cast<double>(idle_steps_)}},
-            {"last_strain", triple(last_motion_.strain)}};
+    Numbers numbers{{"last_rate", {last_rate_}},
+                    {"rate_before", {rate_before_}},
+                    {"last_duration", {last_duration_}},
+                    {"next_duration", {next_duration_}},
+                    {"density_error", {error_}},
+                    {"idle_steps", {static_cast<double>(idle_steps_)}},
+                    {"last_strain", triple(last_motion_.strain)}};
+    if (coarsening_)
+        numbers["coarsening"] = {moved_surface_, moved_boundary_, static_cast<double>(vanished_)};
+    return numbers;
 }
 
 std::vector<NamedArray> ImplicitSintering::arrays() const {
@@ -300,6 +398,12 @@ void ImplicitSintering::take_up(const Numbers& numbers, const std::vector<NamedA
     error_ = number_at(numbers, "density_error");
     idle_steps_ = static_cast<int>(number_at(numbers, "idle_steps"));
     last_motion_.strain = triple_at(numbers, "last_strain");
+    if (coarsening_) {
+        const Vec3 moved = triple_at(numbers, "coarsening");
+        moved_surface_ = moved[0];
+        moved_boundary_ = moved[1];
+        vanished_ = static_cast<std::size_t>(moved[2]);
+    }
     last_motion_.displacement = column_of(arrays, "last_motion", body_.size());
 }
 

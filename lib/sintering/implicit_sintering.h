@@ -29,6 +29,8 @@ class ImplicitSintering : public SinteringMethod {
         double log_density = 0.0;  // change over the step
         double difference = 0.0;   // between its two orders
         bool too_far = false;        // further than any list of pairs reaches
+        double middle = 0.0;         // s, up to which grains coarsen before the motion
+        double rate_change = 0.0;    // by that, of the logarithm of the rate of densification
     };
     Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
     /// What a trial step solves, on the pairs chosen last.
@@ -52,8 +54,19 @@ class ImplicitSintering : public SinteringMethod {
     Motion scaled(const Motion& motion, double factor) const;
     double first_duration();
     StepRecord finish(const Trial& trial, double duration);
+    Trial rest(double until);  // a step in which nothing moves
+    void coarsen_before(double until, Trial& trial);
+    void coarsen_after(const Trial& trial, StepRecord& record);
+    void coarsen(double from, double until);
+    double affine_rate(double from, double until) const;
+    double splitting_error(double log_density, double rate_change) const;  // relative, of the change of density
 
     Candidates candidates_;
+    std::optional<Coarsening> coarsening_;
+    Grains start_;                                // of the step under way, while grains coarsen
+    Coarsening::Change coarsened_;                // since then; its grains are those of the last half step
+    double moved_surface_ = 0.0, moved_boundary_ = 0.0;  // m3, by coarsening since the start of the run
+    std::size_t vanished_ = 0;                           // grains
     Motion last_motion_;               // of the last step, the guess of the next one
     double last_rate_ = 0.0, rate_before_ = 0.0;  // of the logarithm of the density in the last two steps, 1/s of equivalent time
     double last_duration_ = 0.0, next_duration_ = 0.0;  // s of equivalent time

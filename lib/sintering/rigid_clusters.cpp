@@ -26,7 +26,8 @@ Vec3 shift_of(const Box& box, const PeriodicClusters::Offset& image) {
 bool sticks(const SinteringBody& packing, const Kinetics& kinetics, const Pair& pair) {
     if (!kinetics.any_rigid() || !kinetics.rigid(kinetics.row(packing.particles(), pair))) return false;
     const auto [first, second] = packing.radii(pair);
-    return packing.vector(pair).norm() - first - second < sticking_gap * physics::reduced_radius(first, second);
+    return packing.vector(pair).norm() - first - second - packing.offset(pair) <
+           sticking_gap * physics::reduced_radius(first, second);
 }
 
 RigidClusters::RigidClusters(const Box& box, std::span<const Vec3> position, std::span<const Pair> sticking)

@@ -27,8 +27,8 @@ constexpr double min_single = 1e-3;        // a tenth of it is typical; within t
 constexpr double max_single = 0.5;
 constexpr double sharpening = 0.1;         // of what linear solves may leave, where that still unbalances a particle
 constexpr double limit_stiffness = 10.0;   // of the springs at limits of approach, over the mean tangent of the contacts
-constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a limit of approach is met
 constexpr int max_limit_passes = 60;
+constexpr double min_tolerance = 1e-5;     // of a motion, that limits ask for
 constexpr double coarse_contrast = 30.0;   // of diffusion, that makes a coarse space pay
 constexpr double single_contrast = 100.0;  // of diffusion, up to which single precision resolves the soft contacts beside the stiff
 
@@ -150,13 +150,15 @@ void SinterStep::start_limits() {
     double stiffness = 0.0;
     for (const PairForce& pair : rows_)
         stiffness += pair.driving > 0.0 ? pair.cubic * physics::viscosity_shape(pair.isolated_end) : 0.0;
-    limits_.reset(step_.size(), limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1)));
+    const double spring = limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1));
+    limits_.reset(step_.size());
     for (std::size_t row = 0; row < step_.size(); ++row) {
         const PairStep& pair = step_[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
         limits_.add(row, pair.limit,
-                    std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(start, reached)));  // as if alone
+                    std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(start, reached)),  // as if alone
+                    pair.spring > 0.0 ? pair.spring : spring);
     }
 }
 
@@ -171,9 +173,10 @@ void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool 
         // a part of the tangent there.
         const double least = secant ? physics::mean_viscosity_shape(pair.isolated_end, reached)
                                     : min_tangent * physics::viscosity_shape(pair.isolated_end);
-        const double limit = limits_.any() ? limits_.reaction(static_cast<std::size_t>(network_.pair[entry]), -along) : 0.0;
+        const auto row = static_cast<std::size_t>(network_.pair[entry]);
+        const double limit = limits_.any() ? limits_.reaction(row, -along) : 0.0;
         const double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.isolated_end ? least : 0.0);
-        solver.stiffness().set(entry, tangent + (limit > 0.0 ? limits_.stiffness() : 0.0), pair.tangential);
+        solver.stiffness().set(entry, tangent + (limit > 0.0 ? limits_.stiffness(row) : 0.0), pair.tangential);
         return (pair.driving - resistance - limit - pair.tangential * along) * pair.normal +
                pair.tangential * du;
     });
@@ -235,8 +238,8 @@ double SinterStep::line_search(double slope, Motion& motion) {
     return length;
 }
 
-bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepReport& report) {
-    const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
+/// balanced: largest imbalance() that will do.
+bool SinterStep::newton(double tolerance, double balanced, bool balance, Motion& motion, StepReport& report) {
     double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
     forces(motion, true);
     for (int iteration = 0; iteration < max_newton; ++iteration) {
@@ -280,14 +283,17 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
 }
 
 bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepReport& report) {
-    bool converged = newton(tolerance, balance, motion, report);
+    const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
+    bool converged = newton(tolerance, balanced, balance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
-            [&](std::size_t row) { return limit_accuracy * step_[row].reduced_radius; });
+            [&](std::size_t row) { return settings_.limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == max_limit_passes) return false;
-        converged = newton(tolerance, balance, motion, report);
+        // What one limit is missed by does not show in the error of the whole motion.
+        tolerance = std::min(tolerance, std::max(settings_.limit_tightening * tolerance, min_tolerance));
+        converged = newton(tolerance, balanced, balance, motion, report);
     }
     return converged;
 }

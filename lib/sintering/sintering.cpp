@@ -39,7 +39,7 @@ Vec3 triple_at(const Numbers& numbers, const std::string& name) {
 }
 
 Checkpoint SinteringMethod::checkpoint() const {
-    Checkpoint checkpoint{body_.working(), numbers()};
+    Checkpoint checkpoint{body_.checkpoint(), numbers()};
     for (NamedArray& array : arrays()) checkpoint.state.particles.other.push_back(std::move(array));
     checkpoint.numbers["steps"] = {static_cast<double>(steps_)};
     checkpoint.numbers["strain"] = triple(body_.strain());
@@ -48,11 +48,10 @@ Checkpoint SinteringMethod::checkpoint() const {
 
 void SinteringMethod::restore(const Checkpoint& checkpoint) {
     const State& state = checkpoint.state;
-    if (state.particles.size() != body_.size())
+    if (state.particles.size() > body_.size() || (state.particles.size() < body_.size() && !settings_.coarsening.exchanges()))
         throw Error("the checkpoint has " + std::to_string(state.particles.size()) + " particles, the state has " +
                     std::to_string(body_.size()));
-    body_.restore(state.box, state.particles.position, state.time, state.temperature.value_or(0.0),
-                  triple_at(checkpoint.numbers, "strain"));
+    body_.restore(state, triple_at(checkpoint.numbers, "strain"));
     steps_ = static_cast<std::size_t>(number_at(checkpoint.numbers, "steps"));
     take_up(checkpoint.numbers, state.particles.other);
 }

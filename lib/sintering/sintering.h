@@ -4,11 +4,13 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/contacts.h"
 #include "core/stop.h"
+#include "sintering/coarsening.h"
 #include "sintering/kinetics.h"
 #include "sintering/sintering_body.h"
 #include "physics/sinter_contact.h"
@@ -25,6 +27,7 @@ struct SinteringSettings {
     double solver_tolerance = 3e-3;  // relative error of a step's motion in the energy norm
     bool second_order = true;        // of the implicit step
     double mass_scaling = 1e20;      // of the explicit method: inertial over real mass
+    CoarseningSettings coarsening;   // of the implicit method
     StopRequest stop;  // asked during steps: Interrupted then leaves the state as it was before the step
 };
 
@@ -40,6 +43,7 @@ struct StepRecord {
     int attempts = 0, newton = 0, conjugate_gradients = 0;  // of the step, rejected attempts included
     double imbalance = 0.0;             // largest force left on a particle, a cluster or the box, relative; see SinterStep
     bool converged = true;
+    std::optional<CoarseningRecord> coarsening;  // where it is on
 };
 
 /// Numbers by name, one or a vector's three.

@@ -12,29 +12,30 @@ namespace kiln::sintering {
 /// ordinary stiffness. Source: Nocedal & Wright, Numerical Optimization, 2006, section 17.4.
 class UnilateralConstraints {
    public:
-    /// Forgets all; `pairs` rows without a limit, springs of the given stiffness.
-    void reset(std::size_t pairs, double stiffness) {
+    /// Forgets all; `pairs` rows without a limit.
+    void reset(std::size_t pairs) {
         limit_.assign(pairs, no_limit);
         multiplier_.assign(pairs, 0.0);
+        stiffness_.assign(pairs, 0.0);
         rows_.clear();
-        stiffness_ = stiffness;
     }
 
-    /// Limits a row; expected: the reaction to begin with.
-    void add(std::size_t row, double limit, double expected) {
+    /// Limits a row by a spring of that stiffness; expected: the reaction to begin with.
+    void add(std::size_t row, double limit, double expected, double stiffness) {
         rows_.push_back(row);
         limit_[row] = limit;
         multiplier_[row] = expected;
+        stiffness_[row] = stiffness;
     }
 
     bool any() const { return !rows_.empty(); }
-    double stiffness() const { return stiffness_; }
+    double stiffness(std::size_t row) const { return stiffness_[row]; }
 
     /// True where the limit carried a force at the last update.
     bool holds(std::size_t row) const { return multiplier_[row] > 0.0; }
 
     double reaction(std::size_t row, double approach) const {
-        return std::isinf(limit_[row]) ? 0.0 : std::max(0.0, multiplier_[row] + stiffness_ * (approach - limit_[row]));
+        return std::isinf(limit_[row]) ? 0.0 : std::max(0.0, multiplier_[row] + stiffness_[row] * (approach - limit_[row]));
     }
 
     /// Moves the reactions into the multipliers; approach(row) is that of the present motion. Returns by how much the worst of the
@@ -55,9 +56,8 @@ class UnilateralConstraints {
     static constexpr double no_limit = HUGE_VAL;
 
    private:
-    std::vector<double> limit_, multiplier_;  // a row a pair
-    std::vector<std::size_t> rows_;           // those with a limit
-    double stiffness_ = 0.0;
+    std::vector<double> limit_, multiplier_, stiffness_;  // a row a pair
+    std::vector<std::size_t> rows_;                       // those with a limit
 };
 
 }  // namespace kiln::sintering

@@ -35,7 +35,7 @@ Contacts contacts_of(const SinteringBody& body, const Kinetics& kinetics, const 
         const Pair& pair = body.pairs()[seen.row];
         const Vec3 vector = body.vector(pair);
         const auto [first, second] = body.radii(pair);
-        const double overlap = contact_overlap(first, second, vector.norm());
+        const double overlap = body.overlap(pair);
         const std::size_t kind = kinetics.row(body.particles(), pair);
         if (overlap < 0.0 || kinetics.rigid(kind)) continue;
         const double reduced = physics::reduced_radius(first, second), aged = std::max(overlap, min_overlap * reduced);

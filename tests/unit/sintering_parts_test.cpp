@@ -168,15 +168,15 @@ TEST_CASE("candidates: pairs that touch, pairs that a motion brings to touch, an
 
 TEST_CASE("a limit of approach is met exactly by a spring of ordinary stiffness, and lets go when it is pulled") {
     UnilateralConstraints limits;
-    limits.reset(2, 5.0);
-    limits.add(1, 0.3, 0.0);
+    limits.reset(2);
+    limits.add(1, 0.3, 0.0, 5.0);
     double approach = 0.0;
     const double push = 2.0;  // against a resistance of one: push - approach = reaction
     int passes = 0;
     for (double missed = 2.0; missed > 1.0 && passes < 100; ++passes) {
         for (int newton = 0; newton < 20; ++newton) {
             const double reaction = limits.reaction(1, approach);
-            approach += (push - approach - reaction) / (1.0 + (reaction > 0.0 ? limits.stiffness() : 0.0));
+            approach += (push - approach - reaction) / (1.0 + (reaction > 0.0 ? limits.stiffness(1) : 0.0));
         }
         missed = limits.update([&](std::size_t) { return approach; }, [](std::size_t) { return 1e-10; });
     }

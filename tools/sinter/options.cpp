@@ -32,6 +32,9 @@ constexpr const char* footer =
     "  sinter --temperature 1200C --at-time 1min,5min green.kiln | analyze density --table\n"
     "  sinter --temperature 1200C --fix xy --report viscosity --to-density 0.7 -o film.kiln green.kiln\n"
     "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 1min -o forged.kiln green.kiln\n"
+    "  sinter green --distribution lognormal:100nm:1.4 --material alumina-dihedral -n 2000 --method affine \\\n"
+    "      --density 0.45 --compact-to 0.58 | sinter --temperature 1350C --coarsening surface,boundary \\\n"
+    "      --to-density 0.7,0.9 --history grown.jsonl -o grown.kiln\n"
     "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln \\\n"
     "      --history history.jsonl green.kiln";
 
@@ -50,6 +53,7 @@ void Options::add_to(CLI::App& app) {
     add_programme(app);
     add_boundaries(app);
     add_method(app);
+    add_coarsening(app);
     app.add_option("--history", history, "File for the density history, one JSON line a step")->type_name("FILE");
     app.add_option("--checkpoint", checkpoint, "File from which an interrupted run can be resumed; requires -o FILE")
         ->type_name("FILE");
@@ -103,6 +107,34 @@ void Options::add_method(CLI::App& app) {
                "Constant of the tangential viscosity eta pi a^2 (2 R*)^2/(2 beta Delta); a^2 = 4 R* h");
 }
 
+void Options::add_coarsening(CLI::App& app) {
+    app.add_option_function<std::string>(
+           "--coarsening",
+           [this](const std::string& text) {
+               for (std::size_t begin = 0; begin <= text.size();) {
+                   const std::size_t end = std::min(text.find(',', begin), text.size());
+                   const std::vector<std::string> words{"surface", "boundary"};
+                   (cli::choice_from("--coarsening", text.substr(begin, end - begin), words) == 0 ? coarsening.surface
+                                                                                                  : coarsening.boundary) = true;
+                   begin = end + 1;
+               }
+           },
+           "How grains of one material exchange volume over their necks: surface (diffusion), boundary (migration) or "
+           "surface,boundary; implicit")
+        ->type_name("WORDS")
+        ->default_str("none");
+    add_number(app, "--chi", coarsening.chi, {0.0, 1.0},
+               "Neck radius over that of the smaller grain from which on the boundary between them is free to migrate");
+    add_number(app, "--neck-share", coarsening.neck_share, {0.0, 1.0},
+               "Part of a grain's growth that the overlap of its contacts takes up; 0.5: truncated spheres");
+    app.add_option_function<std::string>(
+           "--neck-growth",
+           [this](const std::string& text) { coarsening.neck_growth = cli::choice_from("--neck-growth", text, {"surface"}) == 0; },
+           "surface: necks also grow by surface diffusion, without shrinkage; implicit")
+        ->type_name("{surface}")
+        ->default_str("none");
+}
+
 void Options::check(const CLI::App& app, const std::string& output) {
     if (schedule.empty() && temperature == 0.0) throw CLI::ValidationError("one of --temperature and --schedule is required");
     if (densities.empty() && times.empty() && schedule.empty())
@@ -134,6 +166,12 @@ void Options::refuse_unused(const CLI::App& app) const {
     for (const char* name : {"--time-column", "--temperature-column"})
         if (!io::is_csv(schedule) && app.count(name) > 0) throw CLI::ValidationError(name, "needs --schedule NAME.csv");
     const bool with_inertia = method == SinterMethod::explicit_steps;
+    for (const char* name : {"--coarsening", "--neck-growth"})
+        if (with_inertia && app.count(name) > 0)
+            throw CLI::ValidationError(name, "needs --method implicit: the explicit one has no grains that change in size");
+    if (!coarsening.boundary && app.count("--chi") > 0) throw CLI::ValidationError("--chi", "needs --coarsening boundary");
+    if (!coarsening.exchanges() && app.count("--neck-share") > 0)
+        throw CLI::ValidationError("--neck-share", "needs --coarsening");
     if (!with_inertia && app.count("--mass-scaling") > 0)
         throw CLI::ValidationError("--mass-scaling", "needs --method explicit");
     for (const char* name : {"--tolerance", "--order"})
@@ -157,6 +195,7 @@ sintering::SinteringSettings Options::settings(double start) const {
     settings.solver_tolerance = std::min(solver_share * tolerance, settings.solver_tolerance);
     settings.second_order = order == 2;
     settings.mass_scaling = mass_scaling;
+    settings.coarsening = coarsening;
     return settings;
 }
 

@@ -35,6 +35,7 @@ struct Options {
     int order = 2;
     physics::ContactConstants constants;
     Report report = Report::none;   // what else to say of each state
+    sintering::CoarseningSettings coarsening;
     std::string history;            // file of one JSON line a step
     std::string checkpoint;         // file
     double checkpoint_every = 60.0;  // s of wall time
@@ -59,6 +60,7 @@ struct Options {
     void add_programme(CLI::App& app);
     void add_boundaries(CLI::App& app);
     void add_method(CLI::App& app);
+    void add_coarsening(CLI::App& app);
     void refuse_unused(const CLI::App& app) const;
 
     std::optional<physics::Schedule> programme_;  // of --schedule

@@ -19,12 +19,28 @@ namespace kiln::sinter {
 namespace {
 
 constexpr double validity_limit = 0.9;  // relative density above which grain growth, which is not modelled, matters
+constexpr double closed_pores = 0.92;   // relative density above which the pores of a body are no longer connected
+constexpr std::size_t few_grains = 100;  // of which the means of a body do not mean much
 constexpr double full_density = 1.0;    // that no body passes
 constexpr double max_contacts = 60.0;  // mean coordination number; a body without pores has about 14
 constexpr double max_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
 
 using sintering::triple;
 
+
+void add_grains(Json& summary, const sintering::CoarseningRecord& coarsening) {
+    const physics::GrainSize& size = coarsening.size;
+    summary["grains"] = size.grains;
+    summary["mean_grain_diameter"] = size.mean_diameter;
+    summary["mean_intercept"] = size.mean_intercept;
+    summary["diameter_scatter"] = size.scatter;
+    summary["neck_coverage"] = size.coverage;
+    summary["moved_by_surface"] = coarsening.surface;
+    summary["moved_by_boundary"] = coarsening.boundary;
+    summary["vanished_grains"] = coarsening.vanished_grains;
+    summary["vanished"] = coarsening.vanished;
+    summary["substeps"] = coarsening.substeps;
+}
 
 Json summary_of(const sintering::StepRecord& record, SinterMethod method) {
     Json summary{{"method", method == SinterMethod::implicit ? "implicit" : "explicit"},
@@ -37,6 +53,7 @@ Json summary_of(const sintering::StepRecord& record, SinterMethod method) {
                  {"coordination_number", record.contacts.coordination_number},
                  {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
                  {"attempts", record.attempts}};
+    if (record.coarsening) add_grains(summary, *record.coarsening);
     if (method == SinterMethod::explicit_steps) return summary;
     summary["density_error"] = record.error;
     summary["newton"] = record.newton;
@@ -159,8 +176,7 @@ class Sintered {
         const Json summary = last_summary_ = summary_of(record, options_.method);
         if (sinks_.history) sinks_.history->write(summary);
         sinks_.progress.detail(summary);
-        if (density <= validity_limit && record.relative_density > validity_limit)
-            warn("above a relative density of 0.9 grains grow, which this model leaves out");
+        warn_of_limits(density, record);
         sinks_.progress.show(targets_.fraction(record.relative_density, record.time),
                              "relative density " + Json(std::round(1e4 * record.relative_density) / 1e4).dump());
         // A signal that comes after the last look at it: this step's state is the last.
@@ -168,10 +184,27 @@ class Sintered {
         if (targets_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
     }
 
+    /// What the model leaves out from here on.
+    void warn_of_limits(double density, const sintering::StepRecord& record) {
+        const auto passes = [&](double limit) { return density <= limit && record.relative_density > limit; };
+        if (!options_.coarsening.exchanges()) {
+            if (passes(validity_limit)) warn("above a relative density of 0.9 grains grow, which this model leaves out");
+            return;
+        }
+        if (passes(closed_pores))
+            warn("above a relative density of about 0.92 pores are closed; what their gas and their own coarsening do is left out");
+        if (!few_ && record.coarsening->size.grains < few_grains)
+            warn("at " + Json(record.time).dump() + " s fewer than " + std::to_string(few_grains) +
+                 " grains are left: means over them scatter, a larger packing is needed");
+        few_ = few_ || record.coarsening->size.grains < few_grains;
+    }
+
     /// reported: with what --report asks for.
     void write_state(Json summary, bool reported = true) {
         State reached = method_->state();
         summary["steps"] = method_->steps();
+        summary.erase("vanished");  // those of the last step; --history has them all
+        summary.erase("substeps");
         if (options_.method == SinterMethod::implicit) {
             summary["newton"] = progressed_.newton;
             summary["conjugate_gradients"] = progressed_.conjugate_gradients;
@@ -190,6 +223,7 @@ class Sintered {
     const Sinks& sinks_;
     io::RunState progressed_;
     Targets targets_;
+    bool few_ = false;  // grains are left
     Json last_summary_ = Json::object();
     std::unique_ptr<sintering::SinteringMethod> method_;
 };
