@@ -39,6 +39,18 @@ struct Outflow {
     double fraction(double part) const { return physics::fraction_given(part * surface, part * boundary); }
 };
 
+/// The pairs of a body that touch. Those that come to touch while grains grow do so from the next rest on: which others are in the
+/// body's list is chance.
+std::vector<Pair> contacts_of(const SinteringBody& body) {
+    const std::vector<Pair>& pairs = body.pairs();
+    std::vector<char> touches(pairs.size());
+    for_rows(pairs.size(), [&](std::size_t row) { touches[row] = body.overlap(pairs[row]) >= 0.0; });
+    std::vector<Pair> contacts;
+    for (std::size_t row = 0; row < pairs.size(); ++row)
+        if (touches[row]) contacts.push_back(pairs[row]);
+    return contacts;
+}
+
 /// One rest of a body: its grains step by step through the dose.
 class Exchange {
    public:
@@ -46,7 +58,7 @@ class Exchange {
         : body_(body),
           settings_(settings),
           dose_(dose),
-          pairs_(body.pairs()),
+          pairs_(contacts_of(body)),
           start_{body.particles().radius, std::vector<double>(pairs_.size())},
           volume_(body.size()),
           like_(pairs_.size()),
@@ -86,7 +98,7 @@ class Exchange {
     }
 
    private:
-    /// Radii of the grains, m, and the overlaps of the pairs, m, negative for gaps.
+    /// Radii of the grains and overlaps of the contacts, m.
     struct Stage {
         std::vector<double> radius, overlap;
     };
@@ -178,14 +190,13 @@ class Exchange {
         throw Error("grains take up their neighbours however short a step of coarsening is");
     }
 
-    /// Neck and overlap of a pair that touches at the start of a substep, with the radii of another stage.
+    /// Overlap of a contact with the radii of another stage.
     double overlap_with(const Stage& to, std::size_t row, double part) const {
         const Pair& pair = pairs_[row];
         const double first = start_.radius[at(pair.i)], second = start_.radius[at(pair.j)], overlap = start_.overlap[row];
         const double first_after = to.radius[at(pair.i)], second_after = to.radius[at(pair.j)];
         if (first_after == 0.0 || second_after == 0.0) return overlap;  // its contacts end with the grain
         const double first_change = first_after - first, second_change = second_after - second;
-        if (overlap < 0.0) return overlap + first_change + second_change;
         const bool grows = settings_.neck_growth && like_[row];
         if (first_change == 0.0 && second_change == 0.0 && !grows) return overlap;
         const double neck = std::sqrt(physics::contact_radius_squared(overlap, physics::reduced_radius(first, second)));
@@ -307,22 +318,24 @@ class Exchange {
         volume[grain] = end_.radius[grain] = 0.0;
     }
 
-    /// The grains at the end, with a record of all contacts whose grains or necks have changed.
+    /// The grains at the end, with a record of all contacts whose grains or necks have changed, and of pairs whose spheres overlap
+    /// before they touch.
     Coarsening::Change finish() {
         Grains& grains = change_.grains;
-        const std::vector<double>& offset = body_.offsets();
-        for (std::size_t row = 0; row < pairs_.size(); ++row) {
-            const double first = start_.radius[at(pairs_[row].i)], second = start_.radius[at(pairs_[row].j)];
-            if (first == 0.0 || second == 0.0) continue;
-            const double before = offset.empty() ? 0.0 : offset[row], overlap = start_.overlap[row];
-            double now = before;
-            if (overlap < 0.0)
-                now = std::min(before, 0.0);  // a contact that has ended
-            else if (touched_[row])
-                now = overlap - (first + second - distance_[row]);
-            if (now == 0.0) continue;
-            grains.pair.push_back(pairs_[row]);
-            grains.offset.push_back(now);
+        std::size_t contact = 0;
+        for (std::size_t row = 0; row < body_.pairs().size(); ++row) {
+            const Pair& pair = body_.pairs()[row];
+            double offset = body_.offsets().empty() ? 0.0 : body_.offsets()[row];
+            const double first = start_.radius[at(pair.i)], second = start_.radius[at(pair.j)];
+            if (contact < pairs_.size() && pairs_[contact] == pair) {
+                if (touched_[contact]) offset = start_.overlap[contact] - (first + second - distance_[contact]);
+                ++contact;
+            } else {
+                offset = std::min(offset, 0.0);
+            }
+            if (offset == 0.0 || first == 0.0 || second == 0.0) continue;
+            grains.pair.push_back(pair);
+            grains.offset.push_back(offset);
         }
         grains.radius = std::move(start_.radius);
         return std::move(change_);
@@ -331,7 +344,7 @@ class Exchange {
     const SinteringBody& body_;
     const CoarseningSettings& settings_;
     const Dose& dose_;
-    const std::vector<Pair>& pairs_;
+    const std::vector<Pair> pairs_;        // that touch
     Stage start_, middle_, end_;           // of the substep
     std::vector<double> volume_;           // m3, at its start
     std::vector<char> like_;               // of each pair: two grains of one material

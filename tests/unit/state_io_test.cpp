@@ -149,7 +149,8 @@ TEST_CASE("necks of a record: images are optional, and what is none is refused w
     CHECK(refusal(necks("[0,2]", "[0.1]", 1)).ends_with("neck 0 has particle row 2, there are 2"));
     CHECK(refusal(necks("[1,1]", "[0.1]", 1)).ends_with("neck 0 has particle row 1 at both ends"));
     CHECK(refusal(necks("[0,1]", "[-0.1]", 1)).ends_with("neck 0 has radius -0.1, expected none below zero"));
-    CHECK(refusal(necks("[0,1,1,0]", "[0.1,0.2]", 2)).ends_with("necks 0 and 1 are one: both join particle rows 0 and 1 with the same image"));
+    CHECK(refusal(necks("[0,1,1,0]", "[0.1,0.2]", 2))
+              .ends_with("necks 0 and 1 are one: both join particle rows 0 and 1 with the same image"));
     CHECK(refusal(with("3")).ends_with("necks is not an object of arrays"));
     CHECK(refusal(with(R"({"pair":{"type":"i4","shape":[0,2],"data":[]}})")).ends_with("necks need the arrays pair and radius"));
 }
@@ -158,11 +159,14 @@ TEST_CASE("a state without particles and one with an empty bond list come back")
     State state = rich_state();
     state.particles = {};
     state.bonds = Bonds{};
+    state.necks = Necks{};
     for (const bool text : {true, false}) {
         const State back = io::state_from(document_of(bytes_of(io::document_from(state), text)));
         CHECK(back.particles.size() == 0);
         REQUIRE(back.bonds);
         CHECK(back.bonds->size() == 0);
+        REQUIRE(back.necks);
+        CHECK(back.necks->size() == 0);
     }
 }
 

@@ -46,6 +46,7 @@ Json state_info(io::Document document) {
     Json entry{{"format", "dem-info"}, {"version", io::format_version}, {"document", document.place}, {"kind", "dem-state"}};
     Json arrays{{"particles", arrays_json(document.particles)}};
     if (document.has_bonds) arrays["bonds"] = arrays_json(document.bonds);
+    if (document.has_necks) arrays["necks"] = arrays_json(document.necks);
     const Json box = document.header["box"];
     const State state = io::state_from(std::move(document));
     const analysis::Density density = analysis::measured_density(state);

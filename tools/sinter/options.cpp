@@ -32,9 +32,8 @@ constexpr const char* footer =
     "  sinter --temperature 1200C --at-time 1min,5min green.kiln | analyze density --table\n"
     "  sinter --temperature 1200C --fix xy --report viscosity --to-density 0.7 -o film.kiln green.kiln\n"
     "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 1min -o forged.kiln green.kiln\n"
-    "  sinter green --distribution lognormal:100nm:1.4 --material alumina-dihedral -n 2000 --method affine \\\n"
-    "      --density 0.45 --compact-to 0.58 | sinter --temperature 1350C --coarsening surface,boundary \\\n"
-    "      --to-density 0.7,0.9 --history grown.jsonl -o grown.kiln\n"
+    "  sinter green -n 6000 --distribution lognormal:100nm:1.3 --material alumina-dihedral |\n"
+    "      sinter --temperature 1350C --coarsening surface,boundary --to-density 0.7 -o grown.kiln\n"
     "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln \\\n"
     "      --history history.jsonl green.kiln";
 
