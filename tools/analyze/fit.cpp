@@ -17,13 +17,16 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* fit_footer =
-    "Reads dem-modulus documents (and dem-elastic ones) and tables FILE.csv, all of them for one fit; P = 1 - relative density is "
+    "Reads dem-modulus documents (and dem-elastic ones) and tables (FILE.csv, .txt, .tsv, .dat, .asc), all of them for one fit; P "
+    "= 1 - relative density is "
     "the porosity. A table has the columns relative_density (or porosity), young_modulus and, if there is one, standard_error, "
-    "such as 'relative_density,young_modulus (GPa)'. Several laws give a document each, the best by AICc first.\n\n"
+    "such as 'relative_density,young_modulus (GPa)' or 'porosity (%);E-modulus [GPa]', whatever else it has. Several laws give a "
+    "document each, the best by AICc first.\n\n"
     "Keys of a result:\n"
     "  law, formula, source, weighting, degrees_of_freedom, r_squared, aic, aicc\n"
     "  E0 (Pa), b or Pc       the parameters; with standard_errors, covariance and confidence_intervals\n"
     "                         (95 %, Student's t)\n"
+    "  dense_modulus          E0 by a name that jq can say, with dense_modulus_error and dense_modulus_interval\n"
     "  points, residuals      Pa, measured minus law\n"
     "  band                   {relative_density, young_modulus, and 95 % intervals (Pa) of the law,\n"
     "                         confidence, and of one more point, prediction}\n"
@@ -37,7 +40,7 @@ constexpr const char* examples =
     "  bend bonded.kiln | analyze modulus | analyze fit --law knudsen --table\n"
     "  analyze fit --law all --table moduli.json\n"
     "  analyze fit --law power --data measured.csv moduli.json | jq .data.rms_deviation\n"
-    "  analyze fit --law pabst measured.csv | jq '.[\"Pc\"]'";
+    "  analyze fit --law pabst measured.csv | jq .Pc";
 
 
 /// Errors of moduli smaller than this share of them are those of a computed straight line and say nothing about the points.
@@ -132,6 +135,9 @@ Json fit_json(const physics::PorosityLaw& law, const analysis::Fit& fit, const P
         errors[name] = error;
         intervals[name] = {fit.parameters[k] - reach, fit.parameters[k] + reach};
     }
+    result["dense_modulus"] = result["E0"];
+    result["dense_modulus_error"] = errors["E0"];
+    result["dense_modulus_interval"] = intervals["E0"];
     result["standard_errors"] = errors;
     result["confidence_intervals"] = intervals;
     result["covariance"] = fit.covariance ? matrix_json(*fit.covariance) : Json();

@@ -12,6 +12,16 @@
 
 namespace kiln::analyze {
 
+namespace {
+
+/// Young's modulus: "modulus of rupture" is a strength, "shear modulus" another constant.
+const io::ColumnNames modulus_names{
+    "young_modulus", "young's modulus", "young modulus", "youngs modulus", "elastic modulus", "elastic_modulus",
+    "modulus of elasticity", "modulus$", "e-modulus", "e modulus", "e_modulus", "emodulus", "e-modul", "e modul", "e_modul",
+    "emodul", "elastizit\u00e4tsmodul", "e$"};
+
+}  // namespace
+
 void add_point(Points& points, const io::Document& document) {
     expect_format(document, {"dem-modulus", "dem-elastic"}, "fit");
     const double density = positive_at(document, "relative_density");
@@ -26,18 +36,19 @@ void add_point(Points& points, const io::Document& document) {
 
 void add_table_points(Points& points, const std::string& file) {
     const io::CsvTable table(file);
-    std::optional<std::vector<double>> porosity = table.column({"porosity"}, io::Dimension::none);
+    std::optional<std::vector<double>> porosity = table.column({"porosity", "porosit\u00e4t"}, io::Dimension::fraction);
     if (!porosity) {
-        porosity = table.required({"relative_density", "relative density", "density"}, io::Dimension::none);
+        porosity = table.required({"relative_density", "relative density", "rel. density", "relative dichte", "density"},
+                                  io::Dimension::fraction);
         for (double& value : *porosity) value = 1.0 - value;
     }
-    const std::vector<double> modulus =
-        table.required({"young_modulus", "young's modulus", "young modulus", "modulus", "e (", "e_"}, io::Dimension::pressure);
-    const auto error = table.column({"standard_error", "standard error", "error"}, io::Dimension::pressure);
+    const std::vector<double> modulus = table.required(modulus_names, io::Dimension::pressure);
+    const auto error = table.column({"standard_error", "standard error", "standardfehler", "error"}, io::Dimension::pressure);
     for (std::size_t row = 0; row < modulus.size(); ++row) {
-        const std::string place = file + ", row " + std::to_string(row + 1);
+        const std::string place = table.place(row);
         if (!((*porosity)[row] >= 0.0 && (*porosity)[row] < 1.0))
-            throw Error(place + ": the porosity is " + Json((*porosity)[row]).dump() + ", expected 0 or more and less than 1");
+            throw Error(place + ": the porosity is " + Json((*porosity)[row]).dump() +
+                        ", expected 0 or more and less than 1; a heading such as 'porosity (%)' says that numbers are percent");
         if (!(modulus[row] > 0.0))
             throw Error(place + ": the modulus is " + Json(modulus[row]).dump() + " Pa, expected a positive number");
         if (error && (*error)[row] < 0.0) throw Error(place + ": the standard error is negative");

@@ -17,11 +17,11 @@ struct Points {
 /// Adds the point of a dem-modulus or dem-elastic document. Throws Error naming the key that is missing or out of range.
 void add_point(Points& points, const io::Document& document);
 
-/// Adds the points of a CSV: relative_density or porosity (plain numbers), young_modulus, and optionally standard_error, both with
-/// units. Throws Error naming the file.
+/// Adds the points of a CSV: relative_density or porosity (plain numbers or %), young_modulus, and optionally standard_error, both
+/// with units. Throws Error naming the file.
 void add_table_points(Points& points, const std::string& file);
 
-/// The points of all files, or of standard input: streams, and tables where the name ends in .csv.
+/// The points of all files, or of standard input: streams, and tables (io::is_csv).
 Points read_points(const std::vector<std::string>& files);
 
 /// A list of {porosity, young_modulus, standard_error} and bond_law where it is known.
