@@ -10,6 +10,7 @@ struct Line {
     double intercept = 0.0;
     double slope = 0.0;
     double slope_error = std::numeric_limits<double>::quiet_NaN();  // standard error; NaN for two points
+    double r_squared = 1.0;  // share of the squared deviations of y from its mean that the line explains
 };
 
 /// y = intercept + slope x by least squares, all points alike. At least two points with different x.

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <ranges>
 
 #include "core/types.h"
 
@@ -10,8 +13,12 @@ namespace kiln::analysis {
 
 namespace {
 
-constexpr double rounding = 1e-9;      // of the peak force, by which a point may miss the window
-constexpr double min_return = 0.02;  // of the whole travel, by which the punch must go back; less is tremor of the reading
+constexpr double rounding = 1e-9;           // of the peak force, by which a point may miss the window
+constexpr double min_elastic_return = 0.1;  // of the way in which the force rose; whole bars go back by about all of it
+constexpr double min_explained = 0.95;      // of the squared deviations of forces from their mean
+constexpr double max_slope_ratio = 1.5;     // of the two halves of a branch
+constexpr double max_errors_apart = 3.0;    // of two slopes that are the same
+constexpr double min_return = 0.02;         // of the whole travel, by which the punch must go back; less is tremor of the reading
 
 std::optional<double> number_of(std::string_view text) {
     double number = 0.0;
@@ -30,27 +37,74 @@ std::optional<double> fraction_of(std::string_view text) {
     return *numerator / *denominator;
 }
 
-}  // namespace
+struct Stretch {
+    Branch branch;
+    bool down;
+};
 
-std::optional<Branch> last_unloading(std::span<const double> travel) {
-    if (travel.size() < 2) return std::nullopt;
+/// The test cut where the travel turns.
+std::vector<Stretch> stretches(std::span<const double> travel) {
+    std::vector<Stretch> found;
+    if (travel.size() < 2) return found;
     const auto [least, most] = std::ranges::minmax(travel);
     const double tremor = min_return * (most - least);
-    std::optional<Branch> found;
-    std::size_t top = 0, bottom = 0;  // of the stretch that is being walked, as far as it goes
+    std::size_t start = 0, top = 0, bottom = 0;  // of the stretch that is being walked, as far as it goes
     bool down = false;
+    const auto end_stretch = [&](std::size_t end) {
+        if (end > start) found.push_back({{start, end}, down});
+        start = end;
+    };
     for (std::size_t point = 1; point < travel.size(); ++point) {
         if (travel[point] > travel[top]) top = point;
         if (travel[point] < travel[bottom]) bottom = point;
-        const bool turns_down = !down && travel[point] < travel[top] - tremor;
-        const bool turns_up = down && travel[point] > travel[bottom] + tremor;
-        if (turns_up) top = point;
-        if (turns_down) bottom = point;
-        if (turns_up || turns_down) down = !down;
-        if (turns_down) found = Branch{top, bottom};
-        if (down) found->last = bottom;
+        if (!down && travel[point] < travel[top] - tremor) {
+            end_stretch(top);
+            bottom = point;
+            down = true;
+        } else if (down && travel[point] > travel[bottom] + tremor) {
+            end_stretch(bottom);
+            top = point;
+            down = false;
+        }
     }
+    end_stretch(down ? bottom : top);
     return found;
+}
+
+}  // namespace
+
+std::optional<Branch> last_unloading(std::span<const double> travel) {
+    for (const Stretch& stretch : std::views::reverse(stretches(travel)))
+        if (stretch.down) return stretch.branch;
+    return std::nullopt;
+}
+
+std::optional<Branch> last_loading(std::span<const double> travel, std::span<const double> force) {
+    for (const Stretch& stretch : std::views::reverse(stretches(travel))) {
+        if (stretch.down) continue;
+        const auto [first, last] = stretch.branch;
+        const auto part = force.subspan(first, last - first + 1);
+        return Branch{first, first + static_cast<std::size_t>(std::distance(part.begin(), std::ranges::max_element(part)))};
+    }
+    return std::nullopt;
+}
+
+std::optional<std::size_t> point_before_break(std::span<const double> travel, std::span<const double> force) {
+    if (force.empty()) return std::nullopt;
+    const double largest = std::ranges::max(force);
+    std::size_t top = 0;  // where the force was largest since it last fell to half
+    for (std::size_t point = 1; point < force.size(); ++point) {
+        if (force[point] >= force[top]) top = point;
+        if (force[point] >= 0.5 * force[top]) continue;
+        if (force[top] >= 0.5 * largest) {
+            std::size_t half = top;
+            while (half > 0 && force[half] > 0.5 * force[top]) --half;
+            const double risen = std::max(0.0, travel[top] - travel[half]), back = travel[top] - travel[point];
+            if (back <= min_elastic_return * risen) return top;
+        }
+        top = point;
+    }
+    return std::nullopt;
 }
 
 Window parse_window(const std::string& text) {
@@ -69,6 +123,23 @@ std::vector<std::size_t> points_in(std::span<const double> force, const Branch& 
         if (force[point] >= (window.lower - rounding) * peak && force[point] <= (window.upper + rounding) * peak)
             points.push_back(point);
     return points;
+}
+
+std::optional<std::string> misfit(const Line& line, std::span<const double> deflection, std::span<const double> force) {
+    if (!(line.slope > 0.0) || !std::isfinite(line.slope)) return "the force does not grow with the deflection";
+    if (line.r_squared < min_explained) {
+        char share[32];
+        std::snprintf(share, sizeof share, "%.0f", 100.0 * std::max(0.0, line.r_squared));
+        return "a straight line explains only " + std::string(share) + " % of how the force varies";
+    }
+    const std::size_t half = force.size() / 2;
+    if (half < 3) return std::nullopt;
+    const Line first = fit_line(deflection.first(half), force.first(half)),
+               last = fit_line(deflection.last(half), force.last(half));
+    const auto [flat, steep] = std::minmax(first.slope, last.slope);
+    if (steep > max_slope_ratio * flat && steep - flat > max_errors_apart * std::hypot(first.slope_error, last.slope_error))
+        return "the curve bends: the slopes of its halves differ by more than a factor of 1.5";
+    return std::nullopt;
 }
 
 }  // namespace kiln::analysis

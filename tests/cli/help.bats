@@ -32,7 +32,7 @@ setup_file() {
     bondify -q -o bonded.kiln trajectory.kiln
     bend -o bent.json --states bent.kiln bonded.kiln
     analyze modulus -o moduli.json bent.json
-    printf 'deflection (mm),force (N)\n0,0\n0.02,40\n0.03,60\n0.025,50\n0.02,40\n0.015,30\n0.01,20\n' >bar7.csv
+    printf 'deflection (mm),force (N)\n0,0\n0.01,20\n0.015,30\n0.02,40\n0.025,50\n0.03,60\n0.025,50\n0.02,40\n0.015,30\n0.01,20\n' >bar7.csv
     printf 'relative_density,young_modulus (GPa)\n0.70,121\n0.79,180\n0.88,262\n' >measured.csv
     printf '%s\n' 'temperature (C),5 K/min,10 K/min,20 K/min' 1150,0.607,0.602,0.597 1250,0.655,0.644,0.630 1350,0.739,0.717,0.691 \
         1450,0.842,0.818,0.784 >dilatometer.csv

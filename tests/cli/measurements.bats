@@ -61,7 +61,7 @@ END
 @test "analyze modulus: what is wrong with a file is said" {
     unloading >bar.csv
     run -1 "$ANALYZE" modulus --width 4mm --height 3mm bar.csv
-    assert_output --partial "bar.csv: --span is needed with a CSV"
+    assert_output --partial "bar.csv: --span is needed with a table"
     sed 's/ (mm)//' bar.csv >unit.csv
     run -1 "$ANALYZE" modulus "${SIZE[@]}" unit.csv
     assert_output --partial "unit.csv: column 'deflection' has no unit; known here: m, cm, mm, um, nm"
@@ -78,6 +78,130 @@ END
     assert_output --partial "none.csv: cannot be opened"
     run -2 "$ANALYZE" modulus --span 30 bar.csv
     run -2 "$ANALYZE" modulus --span 0mm bar.csv
+}
+
+# All files of tests/data/machines are the same bar of 203.3 GPa, 1350 N/mm, on a span of 40 mm, as machines of several makers export it.
+BAR=(--span 40mm --width 4mm --height 3mm)
+
+@test "analyze modulus: exports of machines: reports, rows of units, Weg and Kraft, decimal commas, Latin-1, trailing separators" {
+    for file in control instron zwick kraft_weg trailing; do
+        run -0 --separate-stderr "$ANALYZE" modulus "${BAR[@]}" "$ROOT/tests/data/machines/$file.csv"
+        near "$(value .young_modulus)" 2.03321e11 1e-5
+        assert_equal "$(value '[.points, .branch, .turned, .source] | tostring')" "[4,\"unloading\",[],\"$file.csv\"]"
+    done
+    assert_equal "$(value .columns.force)" "force (N)"
+    run -0 "$ANALYZE" modulus "${BAR[@]}" "$ROOT/tests/data/machines/zwick.csv"
+    assert_equal "$(value '.columns | tostring')" '{"force":"Standardkraft (N)","deflection":"Verformung (mm)"}'
+}
+
+@test "analyze modulus: UTF-16, sep=, tabs, .txt, and files that are no text" {
+    local zwick=$ROOT/tests/data/machines/zwick.csv
+    iconv -f latin1 -t utf16 "$zwick" >utf16.csv
+    { printf 'sep=;\r\n'; cat "$zwick"; } >sep.csv
+    tr ';' '\t' <"$zwick" >tabs.txt
+    sed 's/^s;N;mm/s;mN;\xb5m/' "$zwick" | awk -F ';' -v OFS=';' 'NR > 2 { $2 = $2 * 1000 ",0"; gsub(",", ".", $3); $3 = sprintf("%.3f", $3 * 1000); gsub("[.]", ",", $3) } 1' >small.csv
+    for file in utf16.csv sep.csv tabs.txt small.csv; do
+        run -0 "$ANALYZE" modulus "${BAR[@]}" "$file"
+        near "$(value .young_modulus)" 2.03321e11 1e-4
+    done
+    gzip <"$zwick" >zwick.csv.gz
+    for line in "zwick.csv.gz|is compressed (gzip); unpack it first" "book.csv|is a workbook or an archive (zip), no text"; do
+        printf 'PK\003\004\024' >book.csv
+        run -1 "$ANALYZE" modulus "${BAR[@]}" "${line%%|*}"
+        assert_output --partial "${line%%|*}: ${line#*|}"
+        assert_equal "${#lines[@]}" 1
+    done
+}
+
+@test "analyze modulus: compression counted negative, and positions that fall, are turned and named" {
+    cp "$ROOT/tests/data/machines/negative.csv" both.csv
+    awk -F , -v OFS=, 'NR > 1 { $2 = -$2 } 1' both.csv >deflection.csv
+    awk -F , -v OFS=, 'NR > 1 { $1 = 0 - $1 } 1' both.csv >force.csv
+    awk -F , -v OFS=, 'NR > 1 { $1 = sprintf("%.6f", 120 + $1) } 1' both.csv >position.csv
+    for line in "both|force and deflection" "deflection|deflection" "force|force" "position|force and deflection"; do
+        run -0 --separate-stderr "$ANALYZE" modulus "${BAR[@]}" "${line%|*}.csv"
+        near "$(value .young_modulus)" 2.03321e11 1e-5
+        assert_equal "$(value '.turned | join(" and ")')" "${line#*|}"
+        assert_equal "$stderr" "analyze modulus: warning: ${line%|*}.csv: compression counts negative: the sign of ${line#*|} is turned"
+        run -0 --separate-stderr "$ANALYZE" modulus -q "${BAR[@]}" "${line%|*}.csv"
+        assert_equal "$stderr" ""
+    done
+}
+
+@test "analyze modulus: what is not clear is refused with the headings and the options that choose" {
+    run -1 "$ANALYZE" modulus "${BAR[@]}" "$ROOT/tests/data/machines/thousands.csv"
+    assert_output --partial "thousands.csv, line 3: '10,000' has a comma and '0.000' in line 2 a point"
+    awk -F , -v OFS=, 'NR == 1 { print "Gauge 1 (mm),Gauge 2 (mm),Cell (N)"; next } { print 2 * $1, $1, $2 }' "$ROOT/tests/data/machines/control.csv" >two.csv
+    run -1 "$ANALYZE" modulus "${BAR[@]}" two.csv
+    assert_output --partial "two.csv: has no column 'force'; its headings are 'Gauge 1 (mm)', 'Gauge 2 (mm)', 'Cell (N)', of which --force-column may name one"
+    run -1 "$ANALYZE" modulus "${BAR[@]}" --force-column Cell two.csv
+    assert_output --partial "has no column 'deflection'; its headings are 'Gauge 1 (mm)', 'Gauge 2 (mm)', 'Cell (N)', of which --deflection-column may name one"
+    run -0 "$ANALYZE" modulus "${BAR[@]}" --force-column cell --deflection-column "Gauge 2 (mm)" two.csv
+    near "$(value .young_modulus)" 2.03321e11 1e-5
+    assert_equal "$(value .columns.deflection)" "Gauge 2 (mm)"
+    sed '1s/Gauge ./Weg/g;1s/Cell/Kraft/' two.csv >twice.csv
+    run -1 "$ANALYZE" modulus "${BAR[@]}" twice.csv
+    assert_output --partial "twice.csv: the column 'Weg (mm)' stands twice; choose by --deflection-column"
+}
+
+@test "analyze modulus: a fracture ends the test, and --branch loading takes the rise before it" {
+    for file in fracture_return loading_only; do
+        run -1 "$ANALYZE" modulus "${BAR[@]}" "$ROOT/tests/data/machines/$file.csv"
+        assert_output --partial "$file.csv: the curve has no unloading before the bar breaks; --branch loading takes the slope of its rise"
+        run -0 "$ANALYZE" modulus "${BAR[@]}" --branch loading "$ROOT/tests/data/machines/$file.csv"
+        near "$(value .young_modulus)" 2.0332e11 1e-4
+        assert_equal "$(value .branch)" loading
+    done
+    { cat "$ROOT/tests/data/machines/control.csv"; tail -n +2 "$ROOT/tests/data/machines/fracture_return.csv"; } >cycle.csv
+    run -0 "$ANALYZE" modulus "${BAR[@]}" cycle.csv
+    near "$(value .young_modulus)" 2.03321e11 1e-5
+}
+
+@test "analyze modulus: a line that does not fit its points is refused" {
+    local control=$ROOT/tests/data/machines/control.csv
+    sed '9s/50/32/;10s/40/45/;11s/30/22/;12s/20/30/' "$control" >scattered.csv
+    run -1 "$ANALYZE" modulus "${BAR[@]}" scattered.csv
+    assert_output --regexp "scattered.csv: a straight line explains only [0-9]+ % of how the force varies in the last unloading; give another --window"
+    run -1 "$ANALYZE" modulus "${BAR[@]}" --window 0.9:0.75 "$control"
+    assert_output --partial "control.csv: the last unloading has 1 points in the window of forces, expected three or more; give a wider --window"
+}
+
+@test "analyze modulus: --plot shows the curve, the points of the fit and its line" {
+    run -0 "$ANALYZE" modulus "${BAR[@]}" --plot bar.svg "$ROOT/tests/data/machines/control.csv"
+    "$PYTHON" -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse("bar.svg")'
+    run -0 grep -c '<circle' bar.svg
+    assert_output 5 # four points and that of the legend
+    run -0 cat bar.svg
+    assert_output --partial "control.csv: last unloading, E = 203.3 GPa"
+    assert_output --partial "Deflection, um"
+    run -1 "$ANALYZE" modulus "${BAR[@]}" --plot bar.svg "$ROOT/tests/data/machines/control.csv" "$ROOT/tests/data/machines/zwick.csv"
+    assert_output --partial "zwick.csv: --plot shows one test, and this is the second"
+    run -2 "$ANALYZE" modulus "${BAR[@]}" --plot one.svg -o one.svg "$ROOT/tests/data/machines/control.csv"
+}
+
+@test "analyze fit: tables as laboratories keep them: percent, semicolons, E-modulus, names of samples" {
+    printf 'porosity,young_modulus (GPa)\n0.002,400\n0.004,396\n0.006,393\n0.009,388\n' >fraction.csv
+    printf 'porosity (%%),young_modulus (GPa)\n0.2,400\n0.4,396\n0.6,393\n0.9,388\n' >percent.csv
+    printf 'Sample;Porosit\xe4t [%%];E-Modul [kN/mm\xb2]\nA1;0,2;400\nA2;0,4;396\nB1;0,6;393\nB2;0,9;388\n' >german.csv
+    printf 'relative_density;E [GPa]\n0,998;400\n0,996;396\n0,994;393\n0,991;388\n' >density.csv
+    for file in fraction percent german density; do
+        run -0 "$ANALYZE" fit $file.csv
+        near "$(value .b)" 4.29780544 1e-6
+        near "$(jq .dense_modulus <<<"$output")" 4.0322188e11 1e-6
+    done
+    jq -e '.dense_modulus == .["E0"] and .dense_modulus_error == .standard_errors["E0"] and .dense_modulus_interval == .confidence_intervals["E0"]' <<<"$output"
+}
+
+@test "analyze fit: another unit than percent, and a strength, are refused" {
+    printf 'density (g/cm3),young_modulus (GPa)\n0.7,200\n0.8,300\n' >density.csv
+    run -1 "$ANALYZE" fit density.csv
+    assert_output --partial "density.csv: column 'density (g/cm3)' has the unit 'g/cm3'; known here: %, percent"
+    printf 'porosity,modulus of rupture (MPa)\n0.21,200\n0.15,240\n0.1,300\n' >rupture.csv
+    run -1 "$ANALYZE" fit rupture.csv
+    assert_output --partial "rupture.csv: has no column 'young_modulus'; its headings are 'porosity', 'modulus of rupture (MPa)'"
+    printf 'porosity,young_modulus (GPa)\n21,200\n15,240\n10,300\n' >bare.csv
+    run -1 "$ANALYZE" fit bare.csv
+    assert_output --partial "bare.csv, line 2: the porosity is 21.0, expected 0 or more and less than 1; a heading such as 'porosity (%)'"
 }
 
 measured() { # moduli of Knudsen's law, with errors of 1 %
@@ -113,5 +237,5 @@ measured() { # moduli of Knudsen's law, with errors of 1 %
     assert_output --partial "there is no law 'knutsen', only knudsen, spriggs"
     sed '3s/0.90/1.2/' measured.csv >dense.csv
     run -1 "$ANALYZE" fit dense.csv
-    assert_output --partial "dense.csv, row 2: the porosity is -0.1999"
+    assert_output --partial "dense.csv, line 3: the porosity is -0.1999"
 }

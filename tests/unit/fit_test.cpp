@@ -201,6 +201,60 @@ TEST_CASE("unloading: the last stretch on which the punch goes back") {
     CHECK_FALSE(last_unloading(std::vector<double>{}));
 }
 
+TEST_CASE("loading: the last rise, as far as its largest force") {
+    const std::vector<double> travel{0, 1, 2, 1, 0, 1, 2, 3, 4}, force{0, 1, 2, 1, 0, 1, 2, 3, 2.5};
+    const auto branch = last_loading(travel, force);
+    REQUIRE(branch);
+    CHECK(branch->first == 4);
+    CHECK(branch->last == 7);
+    CHECK_FALSE(last_loading(std::vector{2.0, 1.0, 0.0}, std::vector{2.0, 1.0, 0.0}));
+    CHECK_FALSE(last_loading(std::vector<double>{}, std::vector<double>{}));
+}
+
+TEST_CASE("break: the force falls to less than half while the punch stays or goes on") {
+    // Slack, a rise, and the fall at the same travel, further on, or a little back; then the machine returns under rest forces.
+    for (const double at_break : {6.0, 6.3, 5.95}) {
+        const std::vector<double> travel{0, 1, 2, 3, 4, 5, 6, at_break, 4, 2, 0}, force{0, 0, 0, 10, 20, 30, 40, 2, 1.5, 1, 0.5};
+        CAPTURE(at_break);
+        CHECK(point_before_break(travel, force) == std::size_t{6});
+    }
+    const std::vector<double> softening{0, 1, 2, 3, 4, 5, 6}, less{0, 20, 40, 36, 30, 24, 15};
+    CHECK(point_before_break(softening, less) == std::size_t{2});
+    const std::vector<double> cycles{0, 1, 2, 1, 0, 1, 2, 3, 3}, broken_at_last{0, 20, 40, 20, 0, 20, 39, 38, 1};
+    CHECK(point_before_break(cycles, broken_at_last) == std::size_t{6});
+}
+
+TEST_CASE("break: unloading, reloading and what rattles at small forces is none") {
+    const std::vector<double> cycles{0, 1, 2, 3, 2, 1, 0, 1, 2, 3, 4, 3, 2, 1, 0},
+        force{0, 10, 20, 30, 20, 10, 0, 10, 20, 30, 40, 30, 20, 10, 0};
+    CHECK_FALSE(point_before_break(cycles, force));
+    const std::vector<double> stiff{0, 1, 2, 3, 2.8, 2.6, 2.4}, hysteresis{0, 10, 20, 30, 15, 6, 0};
+    CHECK_FALSE(point_before_break(stiff, hysteresis));
+    const std::vector<double> travel{0, 0.1, 0.2, 0.3, 1, 2, 3}, rattling{0, 2, 0, 3, 10, 20, 30};
+    CHECK_FALSE(point_before_break(travel, rattling));
+    CHECK_FALSE(point_before_break(std::vector<double>{}, std::vector<double>{}));
+}
+
+TEST_CASE("misfit: a line must grow, explain its points, and not bend") {
+    std::vector<double> deflection, straight, bent, scattered, falling;
+    for (int point = 0; point < 12; ++point) {
+        deflection.push_back(point);
+        straight.push_back(5.0 + 2.0 * point + (point % 2 == 0 ? 0.1 : -0.1));
+        bent.push_back(point < 6 ? point : 6 + 2 * (point - 6));
+        scattered.push_back(point + (point % 2 == 0 ? 4.0 : -4.0));
+        falling.push_back(-point);
+    }
+    const auto said = [&](const std::vector<double>& force) {
+        return misfit(fit_line(deflection, force), deflection, force).value_or("");
+    };
+    CHECK(said(straight) == "");
+    CHECK(said(bent) == "the curve bends: the slopes of its halves differ by more than a factor of 1.5");
+    CHECK(said(scattered).starts_with("a straight line explains only "));
+    CHECK(said(falling) == "the force does not grow with the deflection");
+    CHECK(said(std::vector<double>(12, 3.0)) == "the force does not grow with the deflection");
+    CHECK(fit_line(std::vector{0.0, 1.0, 2.0}, std::vector{0.0, 2.0, 1.0}).r_squared == relative(0.25, 1e-14));
+}
+
 TEST_CASE("unloading: the window is taken of the branch's own peak, ends included") {
     const std::vector<double> force{0, 100, 0, 60, 50, 40, 20, 10};
     CHECK(points_in(force, {3, 7}, Window()) == std::vector<std::size_t>{4, 5, 6});

@@ -1,15 +1,19 @@
 // modulus.cpp: Young's modulus from the last unloading of each bending test.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <span>
 
 #include "tools/common/quantity_options.h"
 #include "tools/common/value_options.h"
 #include "io/state_io.h"
 #include "physics/bending.h"
 #include "tools/analyze/analyze.h"
-#include "io/csv.h"
+#include "io/chart.h"
 #include "analysis/line_fit.h"
+#include "tools/analyze/measured_test.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
 #include "analysis/student.h"
@@ -20,28 +24,37 @@ namespace kiln::analyze {
 namespace {
 
 constexpr const char* modulus_footer =
-    "Reads dem-bend documents and files FILE.csv of experiments, writes dem-modulus documents. The slope S of force against "
-    "deflection is that of the least squares line through the last unloading, as far as its force lies in the window; "
-    "E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2].\n"
-    "A CSV has a heading with units, such as 'deflection (mm),force (N)' (also displacement, and punch for the travel of the "
-    "machine); it requires --span, --width and --height, and --density if its modulus is to be fitted. With a dem-bend document "
-    "they replace its own.\n\n"
+    "Reads dem-bend documents and tables of testing machines (FILE.csv, .txt, .tsv, .dat, .asc), writes dem-modulus documents. "
+    "The "
+    "slope S of force against deflection is that of the least squares line through the last unloading before the bar breaks, as "
+    "far "
+    "as its force lies in the window; E = S L^3/(4 b h^3) [1 + 2.4 (1 + nu) (h/L)^2]. A line that does not fit its points is "
+    "refused.\n"
+    "A table has units in its headings, such as 'deflection (mm),force (N)', 'Weg [um];Kraft [kN]', or in a row below them; a "
+    "report "
+    "above it, decimal commas, UTF-16 and Latin-1 are understood. Compression counted negative is turned. It requires --span, "
+    "--width "
+    "and --height, and --density if its modulus is to be fitted. With a dem-bend document they replace its own.\n\n"
     "Keys of a result:\n"
     "  young_modulus (Pa), relative_density, slope (N/m), compliance (m/N), window, points\n"
     "  standard_error       Pa; null for two points\n"
     "  confidence_interval  95 %, Student's t; null for two points\n"
+    "  r_squared            share of the forces' variation that the line explains\n"
+    "  branch               unloading or loading\n"
     "  shear_correction     the bracket\n"
     "  bond_law, method     of the test\n"
+    "  columns, turned      of a table: the headings that were read, and those whose signs were turned\n"
     "The error says how straight the curve is, not how much packings or specimens differ.\n\n"
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus --table\n"
     "  analyze modulus --window 0.9:0.1 bent.json | analyze fit\n"
-    "  analyze modulus --span 40mm --width 4mm --height 3mm --compliance 0.2um/N --density 0.79 bar7.csv";
-
+    "  analyze modulus --span 40mm --width 4mm --height 3mm --compliance 0.2um/N --density 0.79 bar7.csv\n"
+    "  analyze modulus --span 40mm --width 4mm --height 3mm --branch loading --plot bar7.svg bar7.csv";
 
 const std::vector<Column> modulus_columns{{"relative_density", "relative density", ""}, {"young_modulus", "Young's modulus", "Pa"},
                                   {"standard_error", "standard error", "Pa"},   {"points", "points", ""},
-                                  {"bond_law", "bond law", ""},                 {"method", "method", ""}};
+                                  {"branch", "branch", ""},                     {"bond_law", "bond law", ""},
+                                  {"method", "method", ""}};
 
 struct ModulusOptions {
     analysis::Window window;
@@ -49,6 +62,11 @@ struct ModulusOptions {
     std::optional<double> density, poisson_ratio;
     double compliance = 0.0;  // of machine and fixture, m/N
     bool shear = true;
+    bool loading = false;
+    ColumnOptions columns;
+    std::string plot;  // a file; empty: none
+
+    [[nodiscard]] std::string branch() const { return loading ? "loading" : "unloading"; }
 
     void add_to(CLI::App& app);
 };
@@ -72,9 +90,11 @@ void ModulusOptions::add_to(CLI::App& app) {
     app.add_option_function<std::string>(
            "--window",
            [this](const std::string& text) { window = cli::parsed("--window", [&] { return analysis::parse_window(text); }); },
-           "Force window of the unloading, as fractions of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
+           "Force window of the branch, as fractions of its peak; the paper's 50 N and 20 N of 60 N are 5/6:1/3")
         ->type_name("UPPER:LOWER")
         ->default_str("5/6:1/3");
+    cli::add_choice(app, "--branch", loading, {{"unloading", false}, {"loading", true}},
+                    "Part of the test that the line goes through, the last of its kind before the bar breaks");
     add_optional(app, "--span", span, Dimension::length, "Distance between the supports");
     add_optional(app, "--width", width, Dimension::length, "Width of the bar");
     add_optional(app, "--height", height, Dimension::length, "Height of the bar, along the load");
@@ -85,69 +105,96 @@ void ModulusOptions::add_to(CLI::App& app) {
                       "Deflection of machine and fixture per force, taken off the measured deflection", "0");
     cli::add_choice(app, "--shear", shear, {{"timoshenko", true}, {"none", false}},
                     "timoshenko: with the bracket; none: without it, as for a slender bar");
+    columns.add_to(app);
+    app.add_option("--plot", plot, "Also a picture of the curve of one test with the points and the line of the fit")
+        ->type_name("FILE.svg");
     app.callback([this, &app] {
         if (!shear && app.count("--poisson-ratio") > 0)
             throw CLI::ValidationError("--poisson-ratio", "has no meaning with --shear none");
+        if (!plot.empty()) cli::check_outputs({app.get_option("--output")->as<std::string>(), plot});
     });
 }
 
-/// The CSV of an experiment as the document that bend would have written.
-io::Document test_from_csv(const std::string& file, const ModulusOptions& options) {
-    const io::CsvTable table(file);
-    io::Document document;
-    document.place = file;
-    const auto deflection = table.required({"deflection", "displacement", "durchbiegung"}, io::Dimension::length);
-    const auto punch = table.column({"punch", "travel", "crosshead"}, io::Dimension::length);
-    document.header = {{"format", "dem-bend"},
-                       {"method", "experiment"},
-                       {"poisson_ratio", options.poisson_ratio.value_or(0.23)},  // alumina
-                       {"curve",
-                        {{"deflection", deflection},
-                         {"punch", punch ? *punch : deflection},
-                         {"force", table.required({"force", "load", "kraft"}, io::Dimension::force)}}}};
+/// The test of a table; warns where signs were turned.
+io::Document test_from_table(const std::string& file, const ModulusOptions& options, bool quiet) {
+    io::Document document = measured_test(io::CsvTable(file), file, options.columns, true);
+    document.header["poisson_ratio"] = options.poisson_ratio.value_or(0.23);  // alumina
+    if (!quiet && !document.header["turned"].empty())
+        cli::warn("analyze modulus", turned_sentence(document));
     return document;
 }
 
-struct Curve {
-    std::vector<double> deflection;  // m
-    std::vector<double> punch;       // m
-    std::vector<double> force;       // N
+/// The points of a branch in the window and the line through them.
+struct BranchFit {
+    analysis::Line line;
+    std::vector<double> deflection, force;  // of the points, less what machine and fixture give way
+    double peak;                            // N, largest force of the branch
 };
 
-Curve curve_of(const io::Document& document) {
-    Curve curve{numbers_at(document, "curve", "deflection"), numbers_at(document, "curve", "punch"),
-                numbers_at(document, "curve", "force")};
-    const std::size_t points = curve.force.size();
-    if (curve.deflection.size() != points || curve.punch.size() != points)
-        throw Error("curve has " + std::to_string(curve.deflection.size()) + " deflections, " +
-                    std::to_string(curve.punch.size()) + " punch positions and " + std::to_string(points) + " forces");
-    return curve;
+/// Throws Error where the branch has too few points or no straight line.
+BranchFit fit_branch(const Curve& curve, const ModulusOptions& options, bool measured) {
+    const auto last = analysis::point_before_break(curve.punch, curve.force);
+    const std::size_t whole = last ? *last + 1 : curve.force.size();
+    const auto travel = std::span(curve.punch).first(whole), force = std::span(curve.force).first(whole);
+    const auto branch = options.loading ? analysis::last_loading(travel, force) : analysis::last_unloading(travel);
+    if (!branch)
+        throw Error("the curve has no " + options.branch() + (last ? " before the bar breaks" : "") +
+                    (options.loading ? "" : "; --branch loading takes the slope of its rise"));
+    BranchFit fit;
+    fit.peak = std::ranges::max(force.subspan(branch->first, branch->last - branch->first + 1));
+    for (const std::size_t point : analysis::points_in(force, *branch, options.window)) {
+        fit.deflection.push_back(curve.deflection[point] - options.compliance * force[point]);
+        fit.force.push_back(force[point]);
+    }
+    const std::string where = "the last " + options.branch();
+    const std::size_t required = measured ? 3 : 2;
+    if (fit.force.size() < required)
+        throw Error(where + " has " + std::to_string(fit.force.size()) + " points in the window of forces, expected " +
+                    (measured ? "three" : "two") + " or more; give a wider --window");
+    const auto [least, most] = std::ranges::minmax(fit.force);
+    if (measured && most - least < 0.5 * (options.window.upper - options.window.lower) * fit.peak)
+        throw Error("the points of " + where + " lie in less than half of the window of forces; give another --window");
+    fit.line = analysis::fit_line(fit.deflection, fit.force);
+    if (const auto problem = analysis::misfit(fit.line, fit.deflection, fit.force))
+        throw Error(*problem + " in " + where + (options.compliance > 0.0 ? ", less --compliance" : "") +
+                    (fit.line.slope > 0.0 ? "; give another --window or --branch" : ""));
+    return fit;
 }
 
-/// Force against deflection in the window of the last unloading, and how many points that are.
-std::pair<analysis::Line, std::size_t> unloading_line(const Curve& curve, const ModulusOptions& options) {
-    const auto branch = analysis::last_unloading(curve.punch);
-    if (!branch) throw Error("the curve has no unloading");
-    std::vector<double> deflection, force;
-    for (const std::size_t point : analysis::points_in(curve.force, *branch, options.window)) {
-        deflection.push_back(curve.deflection[point] - options.compliance * curve.force[point]);
-        force.push_back(curve.force[point]);
-    }
-    if (force.size() < 2)
-        throw Error("the last unloading has " + std::to_string(force.size()) +
-                    " points in the window of forces, expected two or more; give a wider --window");
-    const analysis::Line line = analysis::fit_line(deflection, force);
-    if (!(line.slope > 0.0) || !std::isfinite(line.slope))
-        throw Error(std::string("the force does not grow with the deflection in the last unloading") +
-                    (options.compliance > 0.0 ? ", less --compliance" : ""));
-    return {line, force.size()};
+/// "203.3 GPa".
+std::string modulus_text(double modulus) {
+    const Prefix prefix = prefix_of(modulus);
+    char text[64];
+    std::snprintf(text, sizeof text, "E = %.4g %sPa", modulus / prefix.factor, prefix.name);
+    return text;
+}
+
+/// The curve, the points of the fit and the line, from no force to the largest of the branch.
+io::Chart chart_of(const Curve& curve, const BranchFit& fit, const ModulusOptions& options, const std::string& title) {
+    const Prefix length = prefix_of(std::ranges::max(curve.deflection)), force = prefix_of(std::ranges::max(curve.force));
+    const auto scaled = [](std::vector<double> values, double factor) {
+        for (double& value : values) value /= factor;
+        return values;
+    };
+    std::vector<double> deflection = curve.deflection;
+    for (std::size_t point = 0; point < deflection.size(); ++point) deflection[point] -= options.compliance * curve.force[point];
+    const std::vector<double> ends{0.0, fit.peak};
+    const std::vector<double> along{-fit.line.intercept / fit.line.slope, (fit.peak - fit.line.intercept) / fit.line.slope};
+    return {title,
+            std::string("Deflection, ") + length.name + "m" + (options.compliance > 0.0 ? ", less --compliance" : ""),
+            std::string("Force, ") + force.name + "N",
+            {{"test", io::chart_grey, false, scaled(deflection, length.factor), scaled(curve.force, force.factor)},
+             {"points of the fit", io::chart_blue, true, scaled(fit.deflection, length.factor), scaled(fit.force, force.factor)},
+             {"line", io::chart_red, false, scaled(along, length.factor), scaled(ends, force.factor)}},
+            {},
+            {}};
 }
 
 /// A size of the specimen: the option's, else the document's.
 double size_of(const io::Document& document, const std::string& key, const std::optional<double>& given) {
     if (given) return *given;
-    if (io::is_csv(document.place) && !document.header.contains(key))
-        throw Error("--" + key + " is needed with a CSV");
+    if (is_measured(document) && !document.header.contains(key))
+        throw Error("--" + key + " is needed with a table");
     return positive_at(document, key);
 }
 
@@ -159,35 +206,44 @@ double poisson_ratio_of(const io::Document& document, const ModulusOptions& opti
     return number_at(document, "poisson_ratio", -1.0);
 }
 
-Json modulus_of(const io::Document& document, const ModulusOptions& options) {
+/// The result of a test; the picture of it into `plot` if one is asked for.
+Json modulus_of(const io::Document& document, const ModulusOptions& options, std::string& plot) {
     expect_format(document, {"dem-bend"}, "modulus");
     const double span = size_of(document, "span", options.span);
     const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
     Json density = options.density ? Json(*options.density) : Json();
-    if (!options.density && !io::is_csv(document.place)) density = positive_at(document, "relative_density");
-    const auto [line, points] = unloading_line(curve_of(document), options);
+    if (!options.density && !is_measured(document)) density = positive_at(document, "relative_density");
+    const Curve curve = curve_of(document);
+    const BranchFit fit = fit_branch(curve, options, is_measured(document));
     const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio_of(document, options)) : 1.0;
     const double factor = physics::slender_modulus(1.0, span, width, height) * correction;
-    const double modulus = factor * line.slope, error = factor * line.slope_error;
+    const double modulus = factor * fit.line.slope, error = factor * fit.line.slope_error;
     Json interval;
     if (std::isfinite(error)) {
-        const double reach = analysis::student_factor(points - 2, confidence) * error;
+        const double reach = analysis::student_factor(fit.force.size() - 2, confidence) * error;
         interval = {modulus - reach, modulus + reach};
     }
+    const std::string source = std::filesystem::path(document.place).filename().string();
     Json result{{"format", "dem-modulus"},
                 {"version", io::format_version},
                 {"young_modulus", modulus},
                 {"standard_error", std::isfinite(error) ? Json(error) : Json()},
                 {"confidence_interval", interval},
-                {"slope", line.slope},
+                {"slope", fit.line.slope},
                 {"relative_density", density},
                 {"shear_correction", correction},
                 {"compliance", options.compliance},
                 {"window", {options.window.upper, options.window.lower}},
-                {"points", points}};
-    if (io::is_csv(document.place)) result["source"] = std::filesystem::path(document.place).filename().string();
-    for (const char* key : {"bond_law", "method", "history"})
+                {"points", fit.force.size()},
+                {"r_squared", fit.line.r_squared},
+                {"branch", options.branch()}};
+    if (is_measured(document)) result["source"] = source;
+    for (const char* key : {"bond_law", "method", "columns", "turned", "history"})
         if (document.header.contains(key)) result[key] = document.header[key];
+    if (!options.plot.empty()) {
+        if (!plot.empty()) throw Error("--plot shows one test, and this is the second");
+        plot = io::svg_of(chart_of(curve, fit, options, source + ": last " + options.branch() + ", " + modulus_text(modulus)));
+    }
     return result;
 }
 
@@ -198,13 +254,17 @@ int modulus(int argc, char** argv) {
     CLI::App app{"Young's modulus from the force and deflection of three-point bending tests.", "analyze modulus"};
     app.footer(modulus_footer);
     options.add_to(app);
+    std::string plot;
     const auto convert = [&](const io::Document& document) {
-        Json result = modulus_of(document, options);
+        Json result = modulus_of(document, options, plot);
         if (result.contains("history")) result["history"].push_back(cli::history_entry("analyze modulus", app, Json::object()));
         return result;
     };
-    return report_each(app, argc, argv, modulus_columns, convert,
-                       [&](const std::string& file) { return test_from_csv(file, options); });
+    const int status = report_each(app, argc, argv, modulus_columns, convert, [&](const std::string& file) {
+        return test_from_table(file, options, app.get_option("--quiet")->as<bool>());
+    });
+    write_plot(options.plot, plot);
+    return status;
 }
 
 }  // namespace kiln::analyze

@@ -15,11 +15,6 @@ namespace kiln::analyze {
 
 namespace {
 
-struct Prefix {
-    double factor;
-    const char* name;
-};
-
 constexpr std::array prefixes{Prefix{1e9, "G"},  Prefix{1e6, "M"},  Prefix{1e3, "k"},  Prefix{1.0, ""},
                               Prefix{1e-3, "m"}, Prefix{1e-6, "u"}, Prefix{1e-9, "n"}};
 
@@ -29,16 +24,14 @@ const Json& value_at(const Json& row, const std::string& key) {
     return found == row.end() ? nothing : *found;
 }
 
-/// The prefix that leaves the largest value of the column between 1 and 1000, or the nearest there is.
-Prefix prefix_of(const Column& column, const std::vector<Json>& rows) {
+/// The prefix for the largest value of the column.
+Prefix prefix_of_column(const Column& column, const std::vector<Json>& rows) {
     if (column.unit != "m" && column.unit != "Pa") return {1.0, ""};
     double largest = 0.0;
     for (const Json& row : rows)
         if (const Json& value = value_at(row, column.key); value.is_number())
             largest = std::max(largest, std::abs(value.get<double>()));
-    if (largest == 0.0) return {1.0, ""};
-    const auto found = std::ranges::find_if(prefixes, [&](const Prefix& prefix) { return largest >= prefix.factor; });
-    return found == prefixes.end() ? prefixes.back() : *found;
+    return prefix_of(largest);
 }
 
 std::string cell(const Json& row, const std::string& key, double factor) {
@@ -53,6 +46,12 @@ std::string cell(const Json& row, const std::string& key, double factor) {
 }
 
 }  // namespace
+
+Prefix prefix_of(double value) {
+    if (value == 0.0) return {1.0, ""};
+    const auto found = std::ranges::find_if(prefixes, [&](const Prefix& prefix) { return std::abs(value) >= prefix.factor; });
+    return found == prefixes.end() ? prefixes.back() : *found;
+}
 
 void add_table(CLI::App& app, bool& table) {
     app.add_flag("--table", table, "A table for people, with units, instead of JSON");
@@ -123,7 +122,7 @@ Json spread_json(const std::optional<analysis::Spread>& spread) {
 std::string table_text(const std::vector<Column>& columns, const std::vector<Json>& rows) {
     std::vector<std::string> lines(rows.size() + 1);
     for (const Column& column : columns) {
-        const Prefix prefix = prefix_of(column, rows);
+        const Prefix prefix = prefix_of_column(column, rows);
         std::vector<std::string> cells{column.heading + (column.unit.empty() ? "" : ", " + (prefix.name + column.unit))};
         for (const Json& row : rows) cells.push_back(cell(row, column.key, prefix.factor));
         const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();

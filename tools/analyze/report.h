@@ -19,6 +19,15 @@ struct Column {
     std::string unit;
 };
 
+/// A prefix of units.
+struct Prefix {
+    double factor;
+    const char* name;
+};
+
+/// The prefix that leaves a value between 1 and 1000, or the nearest there is.
+Prefix prefix_of(double value);
+
 /// Adds --table to the app.
 void add_table(CLI::App& app, bool& table);
 

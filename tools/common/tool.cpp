@@ -45,7 +45,7 @@ struct Finished {};
 /// Options that change where or how a result is written, not the result.
 constexpr std::array without_bearing{"--help",    "--version", "--config", "--output",     "--text",
                                      "--quiet",   "--verbose", "--threads", "--history",   "--states",
-                                     "--resume",  "files",     "--checkpoint", "--checkpoint-every"};
+                                     "--resume",  "files",     "--checkpoint", "--checkpoint-every", "--plot"};
 
 /// The text without line ends and what else a terminal would act on; names in it come from files.
 std::string one_line(std::string text) {

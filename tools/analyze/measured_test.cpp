@@ -1,0 +1,107 @@
+// measured_test.cpp: which columns of a machine's export are force and deflection, and their signs.
+#include "tools/analyze/measured_test.h"
+
+#include <algorithm>
+#include <span>
+
+#include "analysis/line_fit.h"
+#include "core/types.h"
+#include "io/files.h"
+#include "tools/analyze/results.h"
+
+namespace kiln::analyze {
+
+namespace {
+
+/// Turns values that are compression counted negative: the largest is so. Whether it did.
+bool turn_negative(std::vector<double>& values) {
+    const auto [least, most] = std::ranges::minmax(values);
+    if (-least <= most) return false;
+    for (double& value : values) value = 0.0 - value;  // and not -value: no zero is to be negative
+    return true;
+}
+
+/// Turns a deflection that falls while the force grows to its largest: a position of the machine, or compression counted negative.
+bool turn_falling(std::vector<double>& deflection, const std::vector<double>& force) {
+    auto rising = static_cast<std::size_t>(std::distance(force.begin(), std::ranges::max_element(force))) + 1;
+    if (rising < 3) rising = force.size();
+    if (!(analysis::fit_line(std::span(force).first(rising), std::span(deflection).first(rising)).slope < 0.0)) return false;
+    for (double& value : deflection) value = 0.0 - value;
+    return true;
+}
+
+}  // namespace
+
+const io::ColumnNames force_names{"force",       "load",           "kraft",         "standardkraft",   "pr\u00fcfkraft",
+                                  "pruefkraft",  "flexure load",   "flexural load", "compressive load"};
+const io::ColumnNames gauge_names{"deflection", "displacement", "durchbiegung", "verformung", "deformation"};
+const io::ColumnNames travel_names{"extension", "flexure extension", "compressive extension", "stroke",       "travel", "crosshead",
+                                   "punch",     "position",          "weg",                   "standardweg",  "traversenweg"};
+
+void ColumnOptions::add_to(CLI::App& app) {
+    app.add_option("--force-column", force, "Heading of the force in a table, where it is not clear; case and unit may be left out")
+        ->type_name("HEADING");
+    app.add_option("--deflection-column", deflection, "Heading of the deflection in a table, where it is not clear")
+        ->type_name("HEADING");
+}
+
+Curve curve_of(const io::Document& document) {
+    Curve curve{numbers_at(document, "curve", "deflection"), numbers_at(document, "curve", "punch"),
+                numbers_at(document, "curve", "force")};
+    const std::size_t points = curve.force.size();
+    if (curve.deflection.size() != points || curve.punch.size() != points)
+        throw Error("curve has " + std::to_string(curve.deflection.size()) + " deflections, " +
+                    std::to_string(curve.punch.size()) + " punch positions and " + std::to_string(points) + " forces");
+    return curve;
+}
+
+io::Document measured_test(const io::CsvTable& table, const std::string& file, const ColumnOptions& options,
+                           bool needs_deflection) {
+    using io::Dimension;
+    const std::size_t force_column = table.get(force_names, Dimension::force, {"--force-column", options.force});
+    std::vector<double> force = table.values(force_column, Dimension::force);
+    Json columns{{"force", table.heading(force_column)}}, turned = Json::array();
+    Json curve = Json::object();
+    if (turn_negative(force)) turned.push_back("force");
+
+    const io::ColumnChoice choice{"--deflection-column", options.deflection};
+    auto gauge = table.find(gauge_names, Dimension::length, choice);
+    if (!gauge) gauge = table.find(travel_names, Dimension::length, choice);
+    if (!gauge && needs_deflection) table.get(gauge_names, Dimension::length, choice);
+    if (gauge) {
+        std::vector<double> deflection = table.values(*gauge, Dimension::length);
+        columns["deflection"] = table.heading(*gauge);
+        if (turn_falling(deflection, force)) turned.push_back("deflection");
+        curve["deflection"] = deflection;
+        auto punch = table.column({"punch", "travel", "crosshead"}, Dimension::length);
+        if (punch) turn_falling(*punch, force);
+        curve["punch"] = punch ? std::move(*punch) : std::move(deflection);
+    }
+    curve["force"] = std::move(force);
+
+    io::Document document;
+    document.place = file;
+    document.header = {{"format", "dem-bend"}, {"method", "experiment"}, {"curve", curve}, {"columns", columns},
+                       {"turned", turned}};
+    return document;
+}
+
+bool is_measured(const io::Document& document) {
+    return document.header.contains("method") && document.header["method"] == "experiment";
+}
+
+std::string turned_sentence(const io::Document& document) {
+    const Json& turned = document.header["turned"];
+    std::string names;
+    for (const Json& name : turned) names += (names.empty() ? "" : " and ") + name.get<std::string>();
+    return document.place + ": compression counts negative: the sign of " + names + " is turned";
+}
+
+void write_plot(const std::string& file, const std::string& svg) {
+    if (file.empty()) return;
+    io::Output output(file, true);
+    output.write_text(svg);
+    output.commit();
+}
+
+}  // namespace kiln::analyze
