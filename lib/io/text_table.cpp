@@ -226,6 +226,9 @@ Layout layout_of(const std::vector<Line>& lines, char separator) {
         layout.units = words.back();
         layout.heading = words[words.size() - 2];
     }
+    for (auto row = rows.begin(); row != first && !layout.units; ++row)  // units of the first columns only
+        if (row->line > layout.heading->line && row->numbers.empty() && !row->remark && units_in(layout.grid, *row) > 0)
+            layout.units = &*row;
     const std::size_t last_line = layout.units ? layout.units->line : layout.heading->line;
     for (const Row& row : rows)
         if (row.line > last_line && !row.remark) layout.body.push_back(&row);
@@ -374,7 +377,9 @@ std::string excerpt(std::string_view text) {
     constexpr std::size_t longest = 40;  // bytes
     std::size_t length = std::min(text.size(), longest);
     while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;  // within a character
-    return "'" + std::string(text.substr(0, length)) + (length < text.size() ? "..." : "") + "'";
+    std::string shown = "'";
+    shown.append(text.substr(0, length)).append(length < text.size() ? "...'" : "'");
+    return shown;
 }
 
 }  // namespace kiln::io

@@ -75,6 +75,7 @@ TEST_CASE("csv: units stand in a row of their own, with or without brackets") {
     for (const char* units : {"(s),(kN),(mm)", "s,kN,mm", "[s],[kN],[mm]", "\"(s)\",\"(kN)\",\"(mm)\"", ",kN,mm", "sec,kN,mm"})
         check_column("Time,Force,Stroke\n" + std::string(units) + "\n0,1.5,2\n1,3,4\n", "force", Dimension::force,
                      {1500.0, 3000.0});
+    check_column("Force,part\nkN,\n1.5,2\n3,4\n", "force", Dimension::force, {1500.0, 3000.0});
     check_column("Force (N),Stroke\n(N),(mm)\n1,2\n", "force", Dimension::force, {1.0});
     check_refused("Force (N),Stroke\nkN,mm\n1,2\n", "column 'Force (N)' has the unit 'N and kN'");
     check_refused("Time,Force\ns,lbf\n1,2\n", "column 'Force (lbf)' has the unit 'lbf'; known here: N, kN");
@@ -172,6 +173,7 @@ TEST_CASE("csv: what is no table of numbers is refused with its file and line") 
     check_refused("force (N)\n1\nx\n", "bar.csv, line 3: 'x' is not a number");
     check_refused("force (N)\n1\nnan\n", "line 3: 'nan' is not a number");
     check_refused("force (N)\n1e999\n", "line 2: '1e999' is not a number");
+    check_refused("force (kN)\n1e306\n", "line 2: column 'force (kN)' is out of the range of numbers");
     check_refused("force (N)\n1 2\n", "has no rows of numbers; line 1 is 'force (N)'");
     check_refused("force (N)\n1\n1 2\n", "line 3: '1 2' is not a number");
     check_refused("1,2\n3,4\n", "line 1: has numbers and no heading above them, such as");
