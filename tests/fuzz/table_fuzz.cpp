@@ -1,5 +1,5 @@
-// table_fuzz.cpp: libFuzzer target: any bytes are read as a table of sizes, a list of spheres and a furnace's log; what is taken
-// must be sound. The first byte says how.
+// table_fuzz.cpp: libFuzzer target: any bytes are read as a table of sizes, a list of spheres, a furnace's log and a bending test;
+// what is taken must be sound. The first byte says how.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "io/csv.h"
 #include "io/furnace_log.h"
 #include "packing/size_table.h"
 #include "packing/sphere_list.h"
@@ -84,6 +85,19 @@ void check_log(const std::string& file) {
     }
 }
 
+/// Columns as analyze asks for them.
+void check_test(const std::string& file) {
+    const io::CsvTable table(file);
+    require(table.rows() > 0, "rows");
+    const auto check = [&](const io::ColumnNames& names, io::Dimension dimension) {
+        const std::vector<double> values = table.required(names, dimension);
+        require(values.size() == table.rows(), "a value for each row");
+        for (const double value : values) require(std::isfinite(value), "value");
+    };
+    check({"force", "load", "kraft", "standardkraft"}, io::Dimension::force);
+    check({"deflection", "extension", "verformung", "weg"}, io::Dimension::length);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -91,7 +105,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const NamedBytes file(data + 1, size - 1);
     const unsigned manner = data[0];
     try {
-        if (manner % 4 == 0)
+        if (manner % 8 == 4)
+            check_test(file.name());
+        else if (manner % 4 == 0)
             check_log(file.name());
         else if (manner % 4 == 1)
             check_spheres(file.name(), manner);
