@@ -15,7 +15,7 @@ constexpr double width = 560.0, height = 380.0, left = 72.0, right = 20.0, top =
 constexpr double margin = 0.04;     // of the range of values, left free on both sides
 constexpr double tick_length = 5.0;  // px
 constexpr double line_height = 17.0;  // px, of the legend
-constexpr int usual_ticks = 6;
+constexpr int usual_ticks = 8;
 
 /// With so many decimals, and no negative zero.
 std::string decimals(double value, int digits) {
@@ -29,18 +29,6 @@ std::string escaped(const std::string& text) {
     std::string result;
     for (const char c : text) result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
     return result;
-}
-
-/// Multiples of 1, 2 or 5 times a power of ten.
-std::vector<ChartTick> round_ticks(double lower, double upper) {
-    const double rough = (upper - lower) / usual_ticks;
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    const double step = power * (rough <= power ? 1.0 : rough <= 2.0 * power ? 2.0 : rough <= 5.0 * power ? 5.0 : 10.0);
-    const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
-    std::vector<ChartTick> ticks;
-    for (double number = std::ceil(lower / step); number * step <= upper; number += 1.0)
-        ticks.push_back({number * step, decimals(number * step, digits)});
-    return ticks;
 }
 
 /// One of the two directions: its values and where they lie in the picture, px.
@@ -135,6 +123,17 @@ std::string legend_tag(const Chart& chart) {
 }
 
 }  // namespace
+
+std::vector<ChartTick> round_ticks(double lower, double upper) {
+    const double rough = (upper - lower) / usual_ticks;
+    const double power = std::pow(10.0, std::floor(std::log10(rough)));
+    const double step = power * (rough <= power ? 1.0 : rough <= 2.0 * power ? 2.0 : rough <= 5.0 * power ? 5.0 : 10.0);
+    const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+    std::vector<ChartTick> ticks;
+    for (double number = std::ceil(lower / step); number * step <= upper; number += 1.0)
+        ticks.push_back({number * step, decimals(number * step, digits)});
+    return ticks;
+}
 
 std::string svg_of(const Chart& chart) {
     const Axis x = axis_over(chart, &ChartSeries::x, left, width - right);

@@ -28,6 +28,9 @@ struct Chart {
 /// Colours of the figures of workflows/post, which stay apart in grey and for colour-blind readers.
 inline constexpr const char *chart_grey = "#707070", *chart_blue = "#0072b2", *chart_red = "#d55e00";
 
+/// Ticks at multiples of 1, 2 or 5 times a power of ten between two values.
+std::vector<ChartTick> round_ticks(double lower, double upper);
+
 /// The picture as the text of an SVG file. The series have finite values, as many of x as of y, and two different ones of each in
 /// all.
 std::string svg_of(const Chart& chart);

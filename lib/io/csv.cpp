@@ -190,7 +190,8 @@ std::vector<double> CsvTable::values(std::size_t column, Dimension dimension, co
     std::vector<double> values = numbers(column);
     for (std::size_t row = 0; row < values.size(); ++row) {
         values[row] = scale->si(values[row]);
-        if (!std::isfinite(values[row])) throw Error(place(row) + ": column " + excerpt(heading.text) + " is out of the range of numbers");
+        if (!std::isfinite(values[row]))
+            throw Error(place(row) + ": column " + excerpt(heading.text) + " is out of the range of numbers");
         if (dimension == Dimension::temperature && !(values[row] > 0.0))
             throw Error(place(row) + ": " + excerpt(table_.cells[row * headings_.size() + column]) + " " + heading.unit +
                         " is not above absolute zero");

@@ -30,10 +30,11 @@ inline double bending_modulus(double slope, double span, double width, double he
 /// apart: F/(48 E I) (held^3 + 3/2 held^2 (read - held)), the bar being straight beyond its supports.
 inline double equivalent_span(double held, double read) { return std::cbrt(held * held * (1.5 * read - 0.5 * held)); }
 
-/// Bending strength, Pa: the stress that the greatest force F (N) would cause at the lower face of an elastic bar, 3 F L/(2 b h^2)
-/// (ASTM C1161, three points); span L, width b, height h in m.
-inline double bending_strength(double force, double span, double width, double height) {
-    return 1.5 * force * span / (width * height * height);
+/// Bending strength, Pa: the stress that the greatest force F (N) would cause at the lower face of an elastic bar,
+/// 3 F (L - Li)/(2 b h^2); span L, width b, height h in m, Li the distance between two points of load, 0 for one (ASTM C1161: three
+/// points, and a quarter of four points with Li = L/2).
+inline double bending_strength(double force, double span, double width, double height, double inner_span = 0.0) {
+    return 1.5 * force * (span - inner_span) / (width * height * height);
 }
 
 }  // namespace kiln::physics

@@ -33,6 +33,9 @@ setup_file() {
     bend -o bent.json --states bent.kiln bonded.kiln
     analyze modulus -o moduli.json bent.json
     printf 'deflection (mm),force (N)\n0,0\n0.01,20\n0.015,30\n0.02,40\n0.025,50\n0.03,60\n0.025,50\n0.02,40\n0.015,30\n0.01,20\n' >bar7.csv
+    printf 'deflection (mm),force (N)\n0,0\n0.01,20\n0.02,40\n0.03,60\n0.03,1\n' >broken.csv
+    printf 'sample,force (N),width (mm),height (mm)\nA,90,4.01,3.00\nB,104,3.99,3.02\nC,110,4.00,3.01\n' >bars.csv
+    printf 'strength (MPa)\n310\n352\n371\n388\n402\n431\n' >strengths.csv
     printf 'relative_density,young_modulus (GPa)\n0.70,121\n0.79,180\n0.88,262\n' >measured.csv
     printf '%s\n' 'temperature (C),5 K/min,10 K/min,20 K/min' 1150,0.607,0.602,0.597 1250,0.655,0.644,0.630 1350,0.739,0.717,0.691 \
         1450,0.842,0.818,0.784 >dilatometer.csv
@@ -73,7 +76,7 @@ setup_file() {
 
 @test "a value that is none is refused by every option that takes one, in a sentence that names it" {
     # What takes a file takes any word, and some are looked at once all options are known.
-    free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --schedule --distribution --image --columns --spheres --time-column --temperature-column --curve --hold-out --grain-size --save-material"
+    free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --schedule --distribution --image --columns --spheres --time-column --temperature-column --curve --hold-out --grain-size --save-material --force-column --deflection-column --plot"
     while read -ra command; do
         [[ ${command[0]} != dem-* ]] || continue
         while read -r option; do

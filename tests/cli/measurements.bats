@@ -179,6 +179,91 @@ BAR=(--span 40mm --width 4mm --height 3mm)
     run -2 "$ANALYZE" modulus "${BAR[@]}" --plot one.svg -o one.svg "$ROOT/tests/data/machines/control.csv"
 }
 
+# A bar that breaks at 60 N without an unloading: 1350 N/mm and 100 MPa, 3 F L/(2 b h^2), as a German machine exports it.
+fracture() {
+    awk 'BEGIN { srand(7); print "Pr\xfcfer;M\xfcller\nVorkraft;2,0;N\n\nPr\xfcfzeit;Standardkraft;Verformung\ns;N;mm"
+        for (i = 0; i <= 240; ++i) {
+            f = i <= 200 ? 0.3 * i : 0.4; x = (i <= 200 ? f / 1350 : 60 / 1350 * (1 + 0.05 * (i - 200) / 40)) + 2e-5 * (rand() - 0.5)
+            line = sprintf("%.2f;%.3f;%.6f", i / 10, f + 0.05 * (rand() - 0.5), x); gsub(/[.]/, ",", line); print line "\r" } }'
+}
+
+@test "analyze modulus, strength: a fracture test with decimal commas and a row of units gives back modulus and strength within 1 %" {
+    fracture >bar.csv
+    run -0 --separate-stderr "$ANALYZE" modulus "${BAR[@]}" --branch loading bar.csv
+    near "$(value .young_modulus)" 2.03321e11 0.01
+    run -0 --separate-stderr "$ANALYZE" strength "${BAR[@]}" bar.csv
+    near "$(value .mean_strength)" 100e6 0.01
+    assert_equal "$(value '[.bars, .weibull_modulus, .strengths[0].columns.force, .strengths[0].fall_recorded] | tostring')" '[1,null,"Standardkraft (N)",true]'
+    assert_equal "$stderr" "analyze strength: warning: Weibull's parameters need 5 bars or more, these are 1"
+    run -0 "$ANALYZE" strength "${BAR[@]}" --inner-span 20mm -q bar.csv
+    near "$(value .mean_strength)" 50e6 0.01
+}
+
+@test "analyze strength: a bar that was unloaded did not break; a record that ends under load is said" {
+    run -1 "$ANALYZE" strength "${BAR[@]}" "$ROOT/tests/data/machines/control.csv"
+    assert_output --partial "control.csv: the bar was unloaded and did not break"
+    head -8 "$ROOT/tests/data/machines/control.csv" >ends.csv
+    run -0 --separate-stderr "$ANALYZE" strength "${BAR[@]}" ends.csv
+    near "$(value .mean_strength)" 100e6 1e-9
+    assert_equal "$(value '.strengths[0].fall_recorded')" false
+    assert_equal "${stderr_lines[0]}" "analyze strength: warning: ends.csv: the record ends under load; the bar is taken to break at its largest force"
+    run -1 "$ANALYZE" strength --span 40mm --width 4mm ends.csv
+    assert_output --partial "ends.csv: --height is needed with a table"
+    run -2 "$ANALYZE" strength "${BAR[@]}" --inner-span 40mm ends.csv
+    assert_output --partial "--inner-span: is not shorter than --span"
+}
+
+@test "analyze strength: tables with a row for each bar, by strength or by force and sizes" {
+    # Strengths at the quantiles (i - 0.5)/10 of m = 10, s0 = 400 MPa.
+    awk 'BEGIN { print "sample;Biegefestigkeit [N/mm\xb2]"
+        for (i = 1; i <= 10; ++i) { line = sprintf("B%d;%.6f", i, 400 * (-log(1 - (i - 0.5) / 10)) ^ 0.1); sub(/[.]/, ",", line); print line } }' >strengths.csv
+    awk -F ';' 'NR == 1 { print "force (N),width (mm),height (mm)"; next } { sub(/,/, ".", $2); b = 3.9 + 0.02 * NR; h = 3.1 - 0.01 * NR
+        printf "%.6f,%.2f,%.2f\n", $2 * 2 * b * h * h / 3 / 40, b, h }' strengths.csv >bars.csv
+    run -0 "$ANALYZE" strength strengths.csv
+    whole=$output
+    near "$(value .characteristic_strength)" 399.97e6 1e-3
+    assert_equal "$(value '[.bars, .strengths[3].source] | tostring')" '[10,"strengths.csv, line 5"]'
+    jq -e '.confidence_intervals | .weibull_modulus[0] < 10 and 10 < .weibull_modulus[1] and .characteristic_strength[0] < 4e8 and 4e8 < .characteristic_strength[1]' <<<"$output"
+    jq -e '(.unbiased_weibull_modulus / .weibull_modulus - .unbiasing_factor | fabs < 1e-12) and (.unbiasing_factor - 0.859 | fabs < 0.006)' <<<"$output"
+    run -0 "$ANALYZE" strength --span 40mm bars.csv
+    for key in .weibull_modulus .characteristic_strength; do near "$(value $key)" "$(jq $key <<<"$whole")" 1e-5; done
+    run -0 "$ANALYZE" strength --table strengths.csv
+    assert_line --index 0 --regexp "bars  mean strength, MPa .* Weibull modulus .* characteristic strength, MPa"
+    run -1 "$ANALYZE" strength bars.csv
+    assert_output --partial "bars.csv: --span is needed with a table"
+}
+
+@test "analyze strength: --plot shows the bars on Weibull's axes" {
+    printf 'strength (MPa)\n310\n350\n372\n390\n405\n430\n' >strengths.csv
+    run -0 "$ANALYZE" strength --plot weibull.svg strengths.csv
+    "$PYTHON" -c 'import xml.dom.minidom; xml.dom.minidom.parse("weibull.svg")'
+    run -0 grep -c '<circle' weibull.svg
+    assert_output 7 # six bars and that of the legend
+    head -4 strengths.csv >three.csv
+    run -1 "$ANALYZE" strength -q --plot weibull.svg three.csv
+    assert_output "analyze strength: --plot needs 5 bars or more"
+}
+
+@test "analyze strength: simulated bars count by what bend found, others are refused" {
+    broken() { jq -c --argjson force "$1" '.strength = {peak_force: $force, breaks: 4} | .span = 0.04 | .width = 0.004 | .height = 0.003' "$DATA/bending_test.jsonl"; }
+    for force in 50 54 57 60 62 66; do broken $force; done >bars.jsonl
+    run -0 "$ANALYZE" strength bars.jsonl
+    near "$(value .strengths[3].strength)" 100e6 1e-9
+    near "$(value .mean_strength)" 96.944444e6 1e-6
+    run -1 "$ANALYZE" strength "$DATA/bending_test.jsonl"
+    assert_output --partial "document 1: was not bent until it broke, as bend --tensile-strength does"
+    run -1 "$ANALYZE" strength --inner-span 10mm bars.jsonl
+    assert_output --partial "document 1: is a test with one point of load, for which --inner-span has no meaning"
+    run -1 "$ANALYZE" strength --force-column Kraft bars.jsonl
+    assert_output --partial "document 1: is no table, for which --force-column has no meaning"
+}
+
+@test "exports of machines in 200 forms, whole and spoilt: the right value, or a refusal in one sentence" {
+    export PYTHONDONTWRITEBYTECODE=1
+    run -0 "$PYTHON" "$ROOT/tests/fuzz/mutate_tables.py" --count 200 --keep "$BATS_TEST_TMPDIR"
+    assert_output --regexp "^200 tables: [0-9]+ whole and right, [0-9]+ spoilt and right, [0-9]+ spoilt and refused, 0 faults$"
+}
+
 @test "analyze fit: tables as laboratories keep them: percent, semicolons, E-modulus, names of samples" {
     printf 'porosity,young_modulus (GPa)\n0.002,400\n0.004,396\n0.006,393\n0.009,388\n' >fraction.csv
     printf 'porosity (%%),young_modulus (GPa)\n0.2,400\n0.4,396\n0.6,393\n0.9,388\n' >percent.csv

@@ -10,6 +10,7 @@ int density(int argc, char** argv);
 int bonds(int argc, char** argv);
 int select(int argc, char** argv);
 int modulus(int argc, char** argv);
+int strength(int argc, char** argv);
 int elastic(int argc, char** argv);
 int conductivity(int argc, char** argv);
 int voxel(int argc, char** argv);

@@ -2,12 +2,9 @@
 #include "tools/analyze/fit_points.h"
 
 #include <cmath>
-#include <utility>
 
-#include "tools/common/each_state.h"
-#include "tools/common/tool.h"
-#include "io/files.h"
 #include "io/csv.h"
+#include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
 
 namespace kiln::analyze {
@@ -61,20 +58,8 @@ void add_table_points(Points& points, const std::string& file) {
 
 Points read_points(const std::vector<std::string>& files) {
     Points points;
-    std::vector<std::string> streams;
-    const auto read_streams = [&] {
-        io::Input input(std::exchange(streams, {}), cli::stop_requested);
-        cli::for_each_document(input, [&](const io::Document& document) { add_point(points, document); });
-    };
-    for (const std::string& file : files) {
-        if (!io::is_csv(file)) {
-            streams.push_back(file);
-            continue;
-        }
-        if (!streams.empty()) read_streams();
-        add_table_points(points, file);
-    }
-    if (!streams.empty() || files.empty()) read_streams();
+    for_each_input(files, [&](const io::Document& document) { add_point(points, document); },
+                   [&](const std::string& file) { add_table_points(points, file); });
     return points;
 }
 

@@ -23,6 +23,7 @@ constexpr std::array subcommands{
     Subcommand{"bonds", "number and sizes of bonds, the distribution of their radii, and the loads they carry", analyze::bonds},
     Subcommand{"select", "the states of a stream nearest to given densities, times or places, or in between", analyze::select},
     Subcommand{"modulus", "Young's modulus from the last unloading of a bending test, simulated or measured", analyze::modulus},
+    Subcommand{"strength", "bending strength of bars that broke, and Weibull's distribution of several", analyze::strength},
     Subcommand{"elastic", "elastic tensor of a periodic cell of bonded particles, or of an image", analyze::elastic},
     Subcommand{"conductivity", "conductivity of a periodic cell of bonded particles", analyze::conductivity},
     Subcommand{"voxel", "a state as an image of voxels, for NumPy or ParaView", analyze::voxel},

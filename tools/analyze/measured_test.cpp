@@ -8,6 +8,7 @@
 #include "core/types.h"
 #include "io/files.h"
 #include "tools/analyze/results.h"
+#include "tools/common/quantity_options.h"
 
 namespace kiln::analyze {
 
@@ -43,6 +44,37 @@ void ColumnOptions::add_to(CLI::App& app) {
         ->type_name("HEADING");
     app.add_option("--deflection-column", deflection, "Heading of the deflection in a table, where it is not clear")
         ->type_name("HEADING");
+}
+
+void ColumnOptions::refuse_with_documents() const {
+    if (!force.empty()) throw Error("is no table, for which --force-column has no meaning");
+    if (!deflection.empty()) throw Error("is no table, for which --deflection-column has no meaning");
+}
+
+void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, io::Dimension dimension,
+                  const std::string& help) {
+    const std::string known = io::known_units(dimension);
+    app.add_option_function<std::string>(
+           name,
+           [&target, name, dimension](const std::string& text) {
+               target = cli::parsed(name, [&] { return io::parse_quantity(text, dimension); });
+               if (!(*target > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
+           },
+           help + (known.empty() ? "" : " [" + known + "]"))
+        ->type_name(known.empty() ? "NUMBER" : "QUANTITY");
+}
+
+void BarOptions::add_to(CLI::App& app) {
+    add_optional(app, "--span", span, io::Dimension::length, "Distance between the supports");
+    add_optional(app, "--width", width, io::Dimension::length, "Width of the bar");
+    add_optional(app, "--height", height, io::Dimension::length, "Height of the bar, along the load");
+}
+
+double BarOptions::size(const io::Document& document, const std::string& key) const {
+    const std::optional<double>& given = key == "span" ? span : key == "width" ? width : height;
+    if (given) return *given;
+    if (is_measured(document) && !document.header.contains(key)) throw Error("--" + key + " is needed with a table");
+    return positive_at(document, key);
 }
 
 Curve curve_of(const io::Document& document) {

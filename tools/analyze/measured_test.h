@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,23 @@ struct ColumnOptions {
     std::string force, deflection;  // headings; empty: the known ones
 
     void add_to(CLI::App& app);
+
+    /// Throws Error if one is given: a document names its parts itself.
+    void refuse_with_documents() const;
+};
+
+/// Adds an option that stays empty unless it is given, and must be positive then.
+void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, io::Dimension dimension,
+                  const std::string& help);
+
+/// Sizes of the bar and its fixture, m.
+struct BarOptions {
+    std::optional<double> span, width, height;
+
+    void add_to(CLI::App& app);
+
+    /// That of the key "span", "width" or "height": as given, else the document's. Throws Error where neither has it.
+    [[nodiscard]] double size(const io::Document& document, const std::string& key) const;
 };
 
 /// Headings of forces, of deflections by a gauge at the bar, and of travels of the machine.

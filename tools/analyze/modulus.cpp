@@ -58,7 +58,7 @@ const std::vector<Column> modulus_columns{{"relative_density", "relative density
 
 struct ModulusOptions {
     analysis::Window window;
-    std::optional<double> span, width, height;  // m
+    BarOptions bar;
     std::optional<double> density, poisson_ratio;
     double compliance = 0.0;  // of machine and fixture, m/N
     bool shear = true;
@@ -71,20 +71,6 @@ struct ModulusOptions {
     void add_to(CLI::App& app);
 };
 
-/// An option that stays empty unless it is given, and must be positive then.
-void add_optional(CLI::App& app, const std::string& name, std::optional<double>& target, io::Dimension dimension,
-                  const std::string& help) {
-    const std::string known = io::known_units(dimension);
-    app.add_option_function<std::string>(
-           name,
-           [&target, name, dimension](const std::string& text) {
-               target = cli::parsed(name, [&] { return io::parse_quantity(text, dimension); });
-               if (!(*target > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
-           },
-           help + (known.empty() ? "" : " [" + known + "]"))
-        ->type_name(known.empty() ? "NUMBER" : "QUANTITY");
-}
-
 void ModulusOptions::add_to(CLI::App& app) {
     using io::Dimension;
     app.add_option_function<std::string>(
@@ -95,9 +81,7 @@ void ModulusOptions::add_to(CLI::App& app) {
         ->default_str("5/6:1/3");
     cli::add_choice(app, "--branch", loading, {{"unloading", false}, {"loading", true}},
                     "Part of the test that the line goes through, the last of its kind before the bar breaks");
-    add_optional(app, "--span", span, Dimension::length, "Distance between the supports");
-    add_optional(app, "--width", width, Dimension::length, "Width of the bar");
-    add_optional(app, "--height", height, Dimension::length, "Height of the bar, along the load");
+    bar.add_to(app);
     add_optional(app, "--density", density, Dimension::none, "Relative density of the specimen");
     add_optional(app, "--poisson-ratio", poisson_ratio, Dimension::none,
                  "Poisson's ratio in the shear correction (default 0.23 for a CSV)");
@@ -190,14 +174,6 @@ io::Chart chart_of(const Curve& curve, const BranchFit& fit, const ModulusOption
             {}};
 }
 
-/// A size of the specimen: the option's, else the document's.
-double size_of(const io::Document& document, const std::string& key, const std::optional<double>& given) {
-    if (given) return *given;
-    if (is_measured(document) && !document.header.contains(key))
-        throw Error("--" + key + " is needed with a table");
-    return positive_at(document, key);
-}
-
 /// Poisson's ratio of the shear correction: the option's, else the document's, which need not have one.
 double poisson_ratio_of(const io::Document& document, const ModulusOptions& options) {
     if (options.poisson_ratio) return *options.poisson_ratio;
@@ -209,8 +185,9 @@ double poisson_ratio_of(const io::Document& document, const ModulusOptions& opti
 /// The result of a test; the picture of it into `plot` if one is asked for.
 Json modulus_of(const io::Document& document, const ModulusOptions& options, std::string& plot) {
     expect_format(document, {"dem-bend"}, "modulus");
-    const double span = size_of(document, "span", options.span);
-    const double width = size_of(document, "width", options.width), height = size_of(document, "height", options.height);
+    if (!is_measured(document)) options.columns.refuse_with_documents();
+    const double span = options.bar.size(document, "span");
+    const double width = options.bar.size(document, "width"), height = options.bar.size(document, "height");
     Json density = options.density ? Json(*options.density) : Json();
     if (!options.density && !is_measured(document)) density = positive_at(document, "relative_density");
     const Curve curve = curve_of(document);

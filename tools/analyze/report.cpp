@@ -78,6 +78,24 @@ void Report::finish() {
     output_.commit();
 }
 
+void for_each_input(const std::vector<std::string>& files, const std::function<void(io::Document)>& document,
+                    const std::function<void(const std::string&)>& table) {
+    std::vector<std::string> streams;  // between two tables
+    const auto read_streams = [&] {
+        io::Input input(std::exchange(streams, {}), cli::stop_requested);
+        cli::for_each_document(input, document);
+    };
+    for (const std::string& file : files) {
+        if (!io::is_csv(file)) {
+            streams.push_back(file);
+            continue;
+        }
+        if (!streams.empty()) read_streams();
+        table(file);
+    }
+    if (!streams.empty() || files.empty()) read_streams();
+}
+
 int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns,
                 const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table) {
@@ -88,21 +106,16 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
     cli::parse(app, argc, argv, common);
 
     Report report(common, table, columns);
-    const auto add_all = [&](std::vector<std::string> files) {
-        io::Input input(std::move(files), cli::stop_requested);
-        cli::for_each_document(input, [&](io::Document document) { report.add(convert(std::move(document))); });
-    };
-    std::vector<std::string> streams;  // between two tables
-    for (const std::string& file : common.files) {
-        if (!from_table || !io::is_csv(file)) {
-            streams.push_back(file);
-            continue;
-        }
-        if (!streams.empty()) add_all(std::exchange(streams, {}));
-        io::Document test = from_table(file);
-        cli::at_place(file, [&] { report.add(convert(std::move(test))); });
+    const auto add = [&](io::Document document) { report.add(convert(std::move(document))); };
+    if (from_table) {
+        for_each_input(common.files, add, [&](const std::string& file) {
+            io::Document test = from_table(file);
+            cli::at_place(file, [&] { add(std::move(test)); });
+        });
+    } else {
+        io::Input input(common.files, cli::stop_requested);
+        cli::for_each_document(input, add);
     }
-    if (!streams.empty() || common.files.empty()) add_all(streams);
     report.finish();
     return cli::done;
 }

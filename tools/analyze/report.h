@@ -52,10 +52,15 @@ class Report {
     std::vector<Json> rows_;
 };
 
+/// Calls document() for each document of the files in their order, standard input if there are none, and table() for each that is a
+/// table (io::is_csv).
+void for_each_input(const std::vector<std::string>& files, const std::function<void(io::Document)>& document,
+                    const std::function<void(const std::string&)>& table);
+
 /// What a subcommand does that makes one result of each document: adds --table and the common options to the app, parses, and
 /// reports convert(document) for every document of the input. convert throws Error for a document that it cannot take; file and
-/// document are put before its sentence. from_table: makes a document of a file whose name ends in .csv; without it such a file is
-/// a stream like every other.
+/// document are put before its sentence. from_table: makes a document of a file that is a table (io::is_csv); without it such
+/// a file is a stream like every other.
 int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>& columns,
                 const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table = {});
