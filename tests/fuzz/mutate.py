@@ -23,7 +23,7 @@ SENTENCE = re.compile(r"^(sinter|bondify|bend|analyze)( [a-z]+)?: [^\x00-\x1f]+$
 # What may have no value: fits and means of too few things, what a state does not hold.
 NULLS = {"standard_error", "confidence_interval", "covariance", "standard_errors", "confidence_intervals", "r_squared", "aicc",
          "aic", "confidence", "prediction", "relative_density", "mean_diameter", "mean_length", "mean_overlap_ratio",
-         "tensile_strength", "shear_strength"}
+         "tensile_strength", "shear_strength", "dense_modulus_error", "dense_modulus_interval"}
 FINITE = {"particles": ("position", "radius"), "bonds": ("radius", "length", "volume", "force", "moment", "normal_force")}
 
 
@@ -41,7 +41,8 @@ def commands(kind):
              [*analyze, "density"], [*analyze, "info"], [*analyze, "select", "--density", "0.5,0.7"]]
     to_failure = [program("bend"), "--tensile-strength", "500MPa", "--until", "0.9"]
     bonded = [bend, to_failure, [*analyze, "bonds"], [*analyze, "elastic"], *state]
-    curve = [[*analyze, "modulus"], [*analyze, "modulus", "--table"], [*analyze, "info"]]
+    slope = [*analyze, "modulus"]
+    curve = [slope, [*slope, "--table"], [*slope, "--branch", "loading"], [*analyze, "info"]]
     modulus = [[*analyze, "fit", "--law", "all"], [*analyze, "fit"]]
     return {"green": state, "bonded": bonded, "curve": curve, "modulus": modulus}[kind]
 
