@@ -24,8 +24,8 @@ constexpr double energy_unit = 100e3;    // J/mol: parameters of the search are 
 constexpr double tolerance = 1e-10;      // of parameters and sum of squares
 constexpr std::size_t profile_points = 25;
 constexpr double beyond_runs = 3.0;      // factor by which the ratio of D_s' to Delta may leave that of the runs
-constexpr double min_start = 100e3, max_start = 1000e3, start_step = 50e3;  // J/mol, from where the search may begin
-constexpr int halvings = 40;
+constexpr double min_start = 100e3, max_start = 1000e3, start_step = 100e3;  // J/mol, from where the search may begin
+constexpr int halvings = 25;
 constexpr double confidence = 0.95;
 constexpr double same_time = 1e-9;
 constexpr double full_density = 0.9999;
@@ -36,13 +36,6 @@ double atomic_volume(const Material& material) { return physics::required(materi
 double activation(const Material& material, double energy, double temperature) {
     return physics::diffusion_parameter(atomic_volume(material), 1.0, energy, temperature);
 }
-
-/// A run's own constants, for where its material says them by a constant as by an activation energy.
-struct RunRates {
-    const SimulatedRun& run;
-    double boundary(double temperature) const { return boundary_rate(run.material, temperature); }
-    double surface(double temperature) const { return surface_rate(run.material, *run.surface, temperature); }
-};
 
 }  // namespace
 
@@ -55,50 +48,32 @@ FiringPrediction::FiringPrediction(const DensificationModel& model, const Materi
       correction_(times_.size(), 0.0) {}
 
 template <typename Boundary, typename Surface>
-FiringPrediction::Way FiringPrediction::way_of(const Boundary& boundary, const Surface& surface) const {
-    ActivatedTime theta(path_, boundary);
+FiringPrediction::Prediction FiringPrediction::uncorrected(const Boundary& boundary, const Surface& surface) const {
+    const ActivatedTime theta(path_, boundary);
     std::optional<ActivatedTime> sigma;
     if (model_.coarsens()) sigma.emplace(path_, surface);
-    Course course = model_.course(theta, sigma ? &*sigma : nullptr);
-    return {std::move(theta), std::move(course)};
+    Prediction prediction{{}, model_.course(theta, sigma ? &*sigma : nullptr), false};
+    for (const double time : times_) prediction.densities.push_back(prediction.course.density(theta.at(time)));
+    prediction.beyond = model_.end_density() < full_density && prediction.course.beyond(theta.at(times_.back()));
+    return prediction;
 }
 
-FiringPrediction::Way FiringPrediction::way_of(const KineticConstants& constants) const {
+void FiringPrediction::correct_by(const SimulatedRun& run) {
+    const Prediction modelled = uncorrected([&](double temperature) { return boundary_rate(run.material, temperature); },
+                                            [&](double temperature) { return surface_rate(run.material, *run.surface, temperature); });
+    const MonotoneCurve simulated(run.time, run.density);
+    for (std::size_t row = 0; row < times_.size(); ++row) correction_[row] = simulated.at(times_[row]) - modelled.densities[row];
+}
+
+FiringPrediction::Prediction FiringPrediction::predict(const KineticConstants& constants) const {
     const double energy = physics::required(material_.surface_energy, material_, "surface_energy");
     const auto rate = [&](const Activated& of, double temperature) {
         return energy * of.prefactor * activation(material_, of.activation_energy, temperature);
     };
-    return way_of([&](double temperature) { return rate(constants.boundary, temperature); },
-                  [&](double temperature) { return rate(*constants.surface, temperature); });
-}
-
-std::vector<double> FiringPrediction::densities(const Way& way) const {
-    std::vector<double> list;
-    for (const double time : times_) list.push_back(way.course.density(way.theta.at(time)));
-    return list;
-}
-
-void FiringPrediction::correct_by(const SimulatedRun& run) {
-    const RunRates rates{run};
-    const std::vector<double> modelled = densities(way_of([&](double temperature) { return rates.boundary(temperature); },
-                                                          [&](double temperature) { return rates.surface(temperature); }));
-    const MonotoneCurve simulated(run.time, run.density);
-    for (std::size_t row = 0; row < times_.size(); ++row) correction_[row] = simulated.at(times_[row]) - modelled[row];
-}
-
-std::vector<double> FiringPrediction::densities(const KineticConstants& constants) const {
-    std::vector<double> list = densities(way_of(constants));
-    for (std::size_t row = 0; row < list.size(); ++row) list[row] += correction_[row];
-    return list;
-}
-
-double FiringPrediction::diameter(const KineticConstants& constants, double density) const {
-    return way_of(constants).course.diameter(density);
-}
-
-bool FiringPrediction::beyond(const KineticConstants& constants) const {
-    const Way way = way_of(constants);
-    return model_.end_density() < full_density && way.course.beyond(way.theta.at(times_.back()));
+    Prediction prediction = uncorrected([&](double temperature) { return rate(constants.boundary, temperature); },
+                                        [&](double temperature) { return rate(*constants.surface, temperature); });
+    for (std::size_t row = 0; row < times_.size(); ++row) prediction.densities[row] += correction_[row];
+    return prediction;
 }
 
 bool follows(const SimulatedRun& run, const physics::Schedule& schedule, const std::vector<double>& times, double tolerance) {
@@ -158,17 +133,17 @@ class Search {
         const KineticConstants tried = constants(x);
         VectorXd list(static_cast<Eigen::Index>(points_));
         Eigen::Index row = 0;
+        std::vector<double> log_size(problem_.grains.size(), 0.0);  // mean over the firings
         for (std::size_t curve = 0; curve < firings_.size(); ++curve) {
-            const std::vector<double> densities = firings_[curve].densities(tried);
-            for (std::size_t point = 0; point < densities.size(); ++point)
-                list[row++] = (problem_.curves[curve].density[point] - densities[point]) / density_error;
+            const FiringPrediction::Prediction predicted = firings_[curve].predict(tried);
+            for (std::size_t point = 0; point < predicted.densities.size(); ++point)
+                list[row++] = (problem_.curves[curve].density[point] - predicted.densities[point]) / density_error;
+            for (std::size_t grain = 0; grain < log_size.size(); ++grain)
+                log_size[grain] +=
+                    std::log(predicted.course.diameter(problem_.grains[grain].density)) / static_cast<double>(firings_.size());
         }
-        for (const GrainSize& grain : problem_.grains) {
-            double log_size = 0.0;
-            for (const FiringPrediction& firing : firings_)
-                log_size += std::log(firing.diameter(tried, grain.density)) / static_cast<double>(firings_.size());
-            list[row++] = (std::log(grain.diameter) - log_size) / grain.error;
-        }
+        for (std::size_t grain = 0; grain < log_size.size(); ++grain)
+            list[row++] = (std::log(problem_.grains[grain].diameter) - log_size[grain]) / problem_.grains[grain].error;
         return list;
     }
 
@@ -184,7 +159,7 @@ class Search {
 
     bool beyond(const VectorXd& x) const {
         const KineticConstants found = constants(x);
-        return std::ranges::any_of(firings_, [&](const FiringPrediction& firing) { return firing.beyond(found); });
+        return std::ranges::any_of(firings_, [&](const FiringPrediction& firing) { return firing.predict(found).beyond; });
     }
 
    private:

@@ -28,23 +28,23 @@ class FiringPrediction {
     /// has the same firing.
     void correct_by(const SimulatedRun& run);
 
-    std::vector<double> densities(const KineticConstants& constants) const;
+    struct Prediction {
+        std::vector<double> densities;  // at the times
+        Course course;                  // of which the correction is no part
+        bool beyond;                    // the runs of the model do not reach as far as the last of the times
+    };
+
+    Prediction predict(const KineticConstants& constants) const;
+    std::vector<double> densities(const KineticConstants& constants) const { return predict(constants).densities; }
 
     /// Mean grain diameter at a density, m; NaN where the runs do not say.
-    double diameter(const KineticConstants& constants, double density) const;
-
-    /// True where the runs of the model do not reach as far as the last of the times.
-    bool beyond(const KineticConstants& constants) const;
+    double diameter(const KineticConstants& constants, double density) const {
+        return predict(constants).course.diameter(density);
+    }
 
    private:
-    struct Way {
-        ActivatedTime theta;
-        Course course;
-    };
     template <typename Boundary, typename Surface>
-    Way way_of(const Boundary& boundary, const Surface& surface) const;
-    Way way_of(const KineticConstants& constants) const;
-    std::vector<double> densities(const Way& way) const;
+    Prediction uncorrected(const Boundary& boundary, const Surface& surface) const;
 
     const DensificationModel& model_;
     Material material_;

@@ -180,27 +180,37 @@ TEST_CASE("kinetics: one run of any constants gives prefactor and energy of curv
     CHECK(within >= 8);
 }
 
-TEST_CASE("kinetics: with coarsening three constants come back, once runs at those found correct the interpolation") {
-    const Material truth = material_with(true_prefactor, true_energy);
-    KineticProblem problem;
-    for (const double rate : {5.0, 20.0})
-        problem.curves.push_back(measured(run_of(truth, true_surface, heating(rate), 60), rate));
-    problem.runs.assign(2, nullptr);
-    problem.material = truth;
-    problem.surface = true_surface;
-    // A family made at another energy and prefactor, so that sigma passes at other densities than in the truth.
+/// Runs of one body at another energy and prefactor than the truth's, so that sigma passes at other densities, and the bounds of a
+/// problem by them.
+static std::vector<SimulatedRun> family_of(KineticProblem& problem) {
     const Material guess = material_with(1e-3 * std::exp(-40e3 / (gas_constant * 1600.0)), 530e3);
-    std::vector<SimulatedRun> family;
     const double temperature = reference_temperature(problem.curves);
+    std::vector<SimulatedRun> family;
     problem.min_ratio = 1e300;
     for (const double factor : {0.03, 0.1, 0.3, 1.0, 3.0, 10.0}) {
         family.push_back(run_of(guess, Activated{factor * 2e-12, surface_energy}, heating(10.0), 60));
-        const double ratio =
-            surface_rate(guess, *family.back().surface, temperature) / boundary_rate(guess, temperature);
+        const double ratio = surface_rate(guess, *family.back().surface, temperature) / boundary_rate(guess, temperature);
         problem.min_ratio = std::min(problem.min_ratio, ratio);
         problem.max_ratio = std::max(problem.max_ratio, ratio);
     }
-    const DensificationModel model(family);
+    return family;
+}
+
+/// Two curves of the truth, with or without surface diffusion.
+static KineticProblem problem_of(std::optional<Activated> surface, double noise) {
+    const Material truth = material_with(true_prefactor, true_energy);
+    KineticProblem problem;
+    for (const double rate : {5.0, 20.0})
+        problem.curves.push_back(measured(run_of(truth, surface, heating(rate), 60), rate, noise, static_cast<unsigned>(rate)));
+    problem.runs.assign(2, nullptr);
+    problem.material = truth;
+    problem.surface = true_surface;
+    return problem;
+}
+
+TEST_CASE("kinetics: with coarsening three constants come back, once runs at those found correct the interpolation") {
+    KineticProblem problem = problem_of(true_surface, 0.0);
+    const DensificationModel model(family_of(problem));
     REQUIRE(model.coarsens());
     KineticFit fit = fit_kinetics(model, problem);
     CHECK(fit.constants.boundary.activation_energy == relative(true_energy, 0.05));
@@ -221,9 +231,39 @@ TEST_CASE("kinetics: with coarsening three constants come back, once runs at tho
         for (const double residual : curve) CHECK(std::abs(residual) < 5e-4);
 }
 
-TEST_CASE("kinetics: grain sizes are followed, and fewer points than constants are refused") {
+TEST_CASE("kinetics: grain sizes narrow the surface diffusivity, and draw it to what they say") {
+    KineticProblem problem = problem_of(true_surface, 0.004);
+    const DensificationModel model(family_of(problem));
+    const KineticFit alone = fit_kinetics(model, problem);
+    const SimulatedRun truth = run_of(problem.material, true_surface, heating(10.0), 200);
+    const MonotoneCurve size(truth.density, truth.grain_diameter);
+    for (const double density : {0.70, 0.75, 0.80}) problem.grains.push_back({density, size.at(density), 0.02});
+    const KineticFit sized = fit_kinetics(model, problem);
+    REQUIRE(alone.covariance);
+    REQUIRE(sized.covariance);
+    CHECK((*sized.covariance)(2, 2) < (*alone.covariance)(2, 2));
+    CHECK(sized.surface_interval->second / sized.surface_interval->first <
+          alone.surface_interval->second / alone.surface_interval->first);
+    FiringPrediction firing(model, problem.material, problem.curves[0].schedule, problem.curves[0].time);
+    CHECK(firing.diameter(sized.constants, 0.75) == relative(size.at(0.75), 0.1));
+    // Grains that did not grow ask for less surface diffusion, and the densities are met less well.
+    for (GrainSize& grain : problem.grains) grain.diameter = 300e-9;
+    const KineticFit small = fit_kinetics(model, problem);
+    CHECK(firing.diameter(small.constants, 0.75) < firing.diameter(sized.constants, 0.75));
+}
+
+TEST_CASE("kinetics: where nothing coarsened the surface diffusivity ends at its lower bound") {
+    KineticProblem problem = problem_of(std::nullopt, 0.001);
+    const DensificationModel model(family_of(problem));
+    const KineticFit fit = fit_kinetics(model, problem);
+    CHECK(fit.surface_at_bound);
+    CHECK(fit.constants.boundary.activation_energy == relative(true_energy, 0.05));
+}
+
+TEST_CASE("kinetics: fewer points than constants, and runs that are not of one body, are refused") {
     const Material truth = material_with(true_prefactor, true_energy);
-    const DensificationModel model({run_of(truth, std::nullopt, heating(10.0), 60)});
+    const SimulatedRun run = run_of(truth, std::nullopt, heating(10.0), 60);
+    const DensificationModel model({run});
     KineticProblem problem;
     DensityCurve one = measured(run_of(truth, std::nullopt, heating(5.0), 60), 5.0);
     one.time.resize(1);
@@ -232,5 +272,15 @@ TEST_CASE("kinetics: grain sizes are followed, and fewer points than constants a
     problem.runs = {nullptr};
     problem.material = truth;
     CHECK_THROWS_WITH_AS(fit_kinetics(model, problem), "there are 1 measured points, and 2 constants to find", kiln::Error);
-    CHECK_THROWS_AS(DensificationModel({}), kiln::Error);
+    CHECK_THROWS_WITH_AS(DensificationModel({}), "there is no simulated run", kiln::Error);
+    SimulatedRun other = run;
+    other.density.front() = 0.58;
+    CHECK_THROWS_WITH_AS(DensificationModel({run, other}),
+                         "run: runs of one body start at relative densities of 0.587000 and 0.580000", kiln::Error);
+    other = run;
+    other.surface = true_surface;
+    CHECK_THROWS_WITH_AS(DensificationModel({run, other}), "run: one run of a body coarsens and another one does not", kiln::Error);
+    other = run;
+    other.density.assign(other.density.size(), start_density);
+    CHECK_THROWS_WITH_AS(DensificationModel({other}), "run: the run does not densify", kiln::Error);
 }
