@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t spans = 240;        // of the grid of densities
 constexpr double same_density = 1e-5;     // of the starts of two runs
-constexpr double same_sigma = 0.03;       // relative: runs nearer than that count as one, or their scatter would become a slope
+constexpr double same_sigma = 0.3;        // relative: runs nearer than that count as one, or their scatter would become a slope
+constexpr double min_share = 0.1;         // of theta, where the straight line between runs of other constants falls
 constexpr int passes = 3;                 // over a span, for the sigma of its middle
 
 /// Rows of a run at which its density is above all before.
@@ -52,11 +53,10 @@ DensificationModel::DensificationModel(const std::vector<SimulatedRun>& runs) {
         if (std::abs(run.density.front() - first.density.front()) > same_density)
             throw Error(run.name + ": runs of one body start at relative densities of " + std::to_string(first.density.front()) +
                         " and " + std::to_string(run.density.front()));
-        const double densest = std::ranges::max(run.density);
-        if (!(densest > run.density.front() + same_density)) throw Error(run.name + ": the run does not densify");
-        end = std::max(end, densest);
+        end = std::max(end, std::ranges::max(run.density));
     }
     const double start = first.density.front();
+    if (!(end > start + same_density)) throw Error(first.name + ": the run does not densify");
     for (std::size_t node = 0; node <= spans; ++node)
         density_.push_back(start + (end - start) * static_cast<double>(node) / static_cast<double>(spans));
     samples_.resize(spans);
@@ -110,8 +110,8 @@ void DensificationModel::order() {
 
 DensificationModel::Sample DensificationModel::at(std::size_t span, double sigma) const {
     const std::vector<Sample>& samples = samples_[span];
-    if (samples.size() == 1) return samples.front();
-    // Outside of what the runs span the nearest two go straight on.
+    // Less than all runs had counts as the least of them, for straight on would come to no theta at all; more goes straight on.
+    if (samples.size() == 1 || sigma <= samples.front().sigma) return samples.front();
     const auto after =
         std::clamp(std::ranges::lower_bound(samples, sigma, {}, &Sample::sigma), samples.begin() + 1, samples.end() - 1);
     const Sample& low = *(after - 1);
@@ -119,7 +119,8 @@ DensificationModel::Sample DensificationModel::at(std::size_t span, double sigma
     const double part = (sigma - low.sigma) / (high.sigma - low.sigma);
     const auto quartic = [](double diameter) { return diameter * diameter * diameter * diameter; };
     const double size = quartic(low.diameter) + part * (quartic(high.diameter) - quartic(low.diameter));
-    return {sigma, std::max(low.theta + part * (high.theta - low.theta), 0.0), std::pow(std::max(size, 0.0), 0.25)};
+    return {sigma, std::max(low.theta + part * (high.theta - low.theta), low.theta * min_share),
+            std::pow(std::max(size, 0.0), 0.25)};
 }
 
 Course DensificationModel::course(const ActivatedTime& theta, const ActivatedTime* sigma) const {

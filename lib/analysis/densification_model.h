@@ -35,8 +35,8 @@ class Course {
 /// was.
 class DensificationModel {
    public:
-    /// runs: of one body. Throws Error for none, for runs that start at different densities or do not densify, for some with and
-    /// some without coarsening, and for materials that lack what theta needs.
+    /// runs: of one body. Throws Error for none, for runs that start at different densities, if none of them densifies, for some
+    /// with and some without coarsening, and for materials that lack what theta needs.
     explicit DensificationModel(const std::vector<SimulatedRun>& runs);
 
     bool coarsens() const { return coarsens_; }

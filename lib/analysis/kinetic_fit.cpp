@@ -21,8 +21,8 @@ using physics::boltzmann_constant, physics::gas_constant;
 namespace {
 
 constexpr double energy_unit = 100e3;    // J/mol: parameters of the search are numbers near one
-constexpr double tolerance = 1e-10;      // of parameters and sum of squares
-constexpr std::size_t profile_points = 25;
+constexpr double tolerance = 1e-8;       // of parameters and sum of squares
+constexpr std::size_t profile_points = 13;
 constexpr double beyond_runs = 3.0;      // factor by which the ratio of D_s' to Delta may leave that of the runs
 constexpr double min_start = 100e3, max_start = 1000e3, start_step = 100e3;  // J/mol, from where the search may begin
 constexpr int halvings = 25;
@@ -59,8 +59,9 @@ FiringPrediction::Prediction FiringPrediction::uncorrected(const Boundary& bound
 }
 
 void FiringPrediction::correct_by(const SimulatedRun& run) {
-    const Prediction modelled = uncorrected([&](double temperature) { return boundary_rate(run.material, temperature); },
-                                            [&](double temperature) { return surface_rate(run.material, *run.surface, temperature); });
+    const Prediction modelled =
+        uncorrected([&](double temperature) { return boundary_rate(run.material, temperature); },
+                    [&](double temperature) { return surface_rate(run.material, *run.surface, temperature); });
     const MonotoneCurve simulated(run.time, run.density);
     for (std::size_t row = 0; row < times_.size(); ++row) correction_[row] = simulated.at(times_[row]) - modelled.densities[row];
 }
@@ -244,15 +245,21 @@ Profile profile_of(const Search& search, VectorXd x, double low, double high) {
     const auto ratio = [&](std::size_t point) {
         return low + (high - low) * static_cast<double>(point) / static_cast<double>(profile_points - 1);
     };
+    std::ranges::fill(profile.squares, std::numeric_limits<double>::infinity());
     const auto fit = [&](std::size_t point, VectorXd from) {
         from[2] = ratio(point);
-        std::tie(profile.x[point], profile.squares[point]) = minimised(search, from, 2);
+        const auto [found, squares] = minimised(search, from, 2);
+        if (squares >= profile.squares[point]) return;
+        profile.x[point] = found;
+        profile.squares[point] = squares;
     };
-    constexpr std::size_t middle = profile_points / 2;
-    x[2] = ratio(middle);
-    fit(middle, start_of(search, x));
-    for (std::size_t point = middle + 1; point < profile_points; ++point) fit(point, profile.x[point - 1]);
-    for (std::size_t point = middle; point-- > 0;) fit(point, profile.x[point + 1]);
+    // From several beginnings, and from each point on to its neighbours, there and back.
+    for (std::size_t point = 0; point < profile_points; point += profile_points / 4) {
+        x[2] = ratio(point);
+        fit(point, start_of(search, x));
+    }
+    for (std::size_t point = 1; point < profile_points; ++point) fit(point, profile.x[point - 1]);
+    for (std::size_t point = profile_points - 1; point-- > 0;) fit(point, profile.x[point + 1]);
     return profile;
 }
 
@@ -321,7 +328,7 @@ KineticFit fit_kinetics(const DensificationModel& model, const KineticProblem& p
     int free = 2;
     std::optional<Profile> profile;
     if (model.coarsens()) {
-        const double low = std::log(problem.min_ratio / beyond_runs), high = std::log(problem.max_ratio * beyond_runs);
+        const double low = std::log(problem.min_ratio), high = std::log(problem.max_ratio * beyond_runs);
         profile = profile_of(search, x, low, high);
         const std::size_t best = profile->best();
         std::tie(x, squares) = minimised(search, profile->x[best], 3);
