@@ -110,8 +110,8 @@ setup() { cd "$BATS_FILE_TMPDIR"; }
 
 @test "the study: fits, runs at the constants found, tables and figures" {
     mkdir -p packings
-    printf 'particles = 150\ndiameter = "300nm"\ndensity = 0.587\nseed = 1\n' >packings/one.toml
-    study() { make -C "$ROOT/workflows/kinetics" PACKINGS="$PWD/packings" OUT="$PWD/study" COARSENING= "$@"; }
+    printf 'particles = 9000\ndiameter = "300nm"\ndensity = 0.587\nseed = 1\n' >packings/one.toml
+    study() { make -C "$ROOT/workflows/kinetics" PACKINGS="$PWD/packings" OUT="$PWD/study" COARSENING= N=150 "$@"; }
     run -0 study
     assert_line --partial "Activation energy without a model, kJ/mol: 576 at constant density"
     assert_line --regexp "^one +[0-9]+ +[0-9]+ "
