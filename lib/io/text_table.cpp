@@ -349,7 +349,7 @@ TextTable table_in(std::string_view text, const std::string& name, std::size_t c
     const auto row_of = [&](const Row& row) {
         std::vector<std::string_view> cells(width);
         for (std::size_t column = 0; column < std::min(width, row.count); ++column) cells[column] = layout.grid.cell(row, column);
-        if (row.remark) cells[0] = trimmed(cells[0].substr(cells[0].find_first_not_of('#')));
+        if (row.remark) cells[0] = trimmed(cells[0].substr(std::min(cells[0].find_first_not_of('#'), cells[0].size())));
         return cells;
     };
     if (layout.heading) table.headings = row_of(*layout.heading);

@@ -217,3 +217,8 @@ TEST_CASE("csv: names that are units too do not make a row of units of the row o
     CHECK(table.values(table.get({"d$"}, Dimension::length), Dimension::length)[0] == relative(1e-9, 1e-14));
     CHECK(table.values(table.get({"t$"}, Dimension::temperature), Dimension::temperature)[0] == relative(276.15, 1e-14));
 }
+
+TEST_CASE("csv: a heading that is nothing but the sign of a remark") {
+    CHECK(table_of("#,force (N)\n1,2\n2,3\n").required({"force"}, Dimension::force) == std::vector{2.0, 3.0});
+    check_refused("#\n0,\n#f\n", "bar.csv");
+}
