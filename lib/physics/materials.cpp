@@ -54,7 +54,7 @@ Material builtin_material(const std::string& name) {
 }
 
 double required(const std::optional<double>& value, const Material& material, const std::string& key) {
-    if (!value) throw Error("material '" + material.name + "' has no " + key);
+    if (!value) throw MissingConstant("material '" + material.name + "' has no " + key);
     return *value;
 }
 

@@ -14,7 +14,12 @@ Material builtin_material(const std::string& name);
 /// Names of the built-in materials.
 std::vector<std::string> builtin_names();
 
-/// A material's value, or Error "material 'X' has no KEY".
+/// What required() throws.
+struct MissingConstant : Error {
+    using Error::Error;
+};
+
+/// A material's value, or MissingConstant "material 'X' has no KEY".
 double required(const std::optional<double>& value, const Material& material, const std::string& key);
 
 /// Delta of a material at a temperature (K), m5/(N s): its constant diffusion_parameter, or by grain boundary diffusion.

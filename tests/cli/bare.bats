@@ -136,6 +136,10 @@ refused() {
     refused "has material 1, there are 1" "$SINTER" --temperature 1200C --at-time 1s numbered.jsonl
     run -0 jq -e '[.materials[].name] == ["glass", "alumina"]' \
         <("$SINTER" -q --temperature 1200C --at-time 1s --material glass.json,alumina --text numbered.jsonl)
+    jq -c '.materials = [{name: "unknown"}]' pair.jsonl >unknown.jsonl
+    refused "unknown.jsonl, document 1: material 'unknown' has no surface_energy; --material NAME or FILE.json says what it is$" \
+        "$SINTER" --temperature 1200C --at-time 1s unknown.jsonl
+    "$SINTER" -q --temperature 1200C --at-time 1s --material alumina -o known.kiln unknown.jsonl
     refused "unobtainium" "$SINTER" --temperature 1200C --at-time 1s --material unobtainium green.jsonl
     run -2 "$ANALYZE" elastic --model voxel --image image.npy --young-modulus 400GPa --poisson-ratio 0.2 --material alumina
     assert_output --partial "--material"

@@ -7,9 +7,16 @@
 
 #include "io/material_io.h"
 #include "io/state_io.h"
+#include "physics/materials.h"
 #include "tools/common/each_state.h"
 
 namespace kiln::cli {
+
+namespace {
+
+constexpr const char* say_what = "; --material NAME or FILE.json says what it is";
+
+}  // namespace
 
 void MaterialOption::add_to(CLI::App& app) {
     app.add_option_function<std::string>(
@@ -41,7 +48,7 @@ State MaterialOption::state_from(io::Document document) const {
     State state = io::state_from(std::move(document));
     const bool assumed = std::ranges::any_of(state.materials, io::is_assumed);
     if (assumed && !warned_ && warn_) {
-        warn_(place + ": names no material, and alumina is assumed; --material NAME or FILE.json says what it is");
+        warn_(place + ": names no material, and alumina is assumed" + say_what);
         warned_ = true;
     }
     return state;
@@ -52,7 +59,14 @@ void for_each_state(io::Input& input, const MaterialOption& material,
     while (auto document = input.next()) {
         const std::string place = document->place;
         State state = material.state_from(std::move(*document));
-        if (!at_place(place, [&] { return work(std::move(state), place); })) return;
+        const auto with_advice = [&] {
+            try {
+                return work(std::move(state), place);
+            } catch (const physics::MissingConstant& missing) {
+                throw Error(missing.what() + std::string(say_what));
+            }
+        };
+        if (!at_place(place, with_advice)) return;
     }
 }
 
