@@ -280,7 +280,7 @@ Layout found_layout(std::vector<Line> lines, const std::string& name) {
     std::optional<Layout> found;
     for (const char separator : separators) {
         Layout layout = layout_of(lines, separator);
-        if (separator == ' ' && !is_regular(layout)) continue;
+        if (separator == ' ' && !is_regular(layout)) layout.heading = nullptr;
         if (layout.heading && layout.heading->filled > 1) return layout;
         if (layout.heading || !found) found = std::move(layout);
     }

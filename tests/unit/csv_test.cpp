@@ -221,4 +221,6 @@ TEST_CASE("csv: names that are units too do not make a row of units of the row o
 TEST_CASE("csv: a heading that is nothing but the sign of a remark") {
     CHECK(table_of("#,force (N)\n1,2\n2,3\n").required({"force"}, Dimension::force) == std::vector{2.0, 3.0});
     check_refused("#\n0,\n#f\n", "bar.csv");
+    check_refused("SEP= \n", "bar.csv: has no rows of numbers");
+    check_refused("sep= \nforce (N)\n1 2\n", "bar.csv");
 }
