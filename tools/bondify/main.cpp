@@ -82,7 +82,8 @@ int run(int argc, char** argv) {
     io::Output output(common.output, common.text);
     cli::Progress progress("bondify", common);
     cli::for_each_state(input, [&](State state, const std::string& place) {
-        if (state.bonds && state.bonds->size() > 0 && !common.quiet) cli::warn("bondify", place + ": the bonds that it had are replaced");
+        if (state.bonds && state.bonds->size() > 0 && !common.quiet)
+            cli::warn("bondify", place + ": the bonds that it had are replaced");
         const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, place); }};
         const bonding::Summary summary = bonding::bondify(state, options, watch);
         progress.clear();
