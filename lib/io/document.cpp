@@ -190,6 +190,7 @@ bool DocumentReader::find_document() {
 
 Json DocumentReader::read_header(const std::string& place) {
     const int first = std::getc(file_);  // looked at before a line is read: what is no stream at all may hold no line end either
+    if (first == 0x1f) fail(place, "is compressed (gzip), expected a JSON object; unpack it first, as gunzip does");
     if (first != '{') fail(place, "begins with byte " + std::to_string(first) + ", expected '{', the beginning of a JSON object");
     std::ungetc(first, file_);
     char* text = nullptr;

@@ -46,6 +46,8 @@ TEST_CASE("a stream that holds no document is at its end") {
 
 TEST_CASE("what is no line of JSON is refused, with the place") {
     CHECK(refusal("hello") == "stream, document 1: begins with byte 104, expected '{', the beginning of a JSON object");
+    CHECK(refusal("\x1f\x8b\x08") ==
+          "stream, document 1: is compressed (gzip), expected a JSON object; unpack it first, as gunzip does");
     CHECK(refusal("[1]\n") == "stream, document 1: begins with byte 91, expected '{', the beginning of a JSON object");
     CHECK(refusal("\xef\xbb\xbf{}\n") == "stream, document 1: begins with byte 239, expected '{', the beginning of a JSON object");
     CHECK(refusal("{}\n{}\n{\"a\":}\n") == "stream, document 3: is not a line of JSON (byte 6)");

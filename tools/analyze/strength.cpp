@@ -33,7 +33,7 @@ constexpr const char* strength_footer =
     "are "
     "no columns.\n\n"
     "Keys of a result:\n"
-    "  bars, strengths           number of bars, and of each its strength (Pa), source, and what was read of it;\n"
+    "  bars, strengths           number of bars, and of each its strength (Pa), source and readings;\n"
     "                            fall_recorded: whether the force falls after its largest\n"
     "  mean_strength, standard_deviation  Pa; the deviation is null for one bar\n"
     "  weibull_modulus           of the greatest likelihood; null for fewer than 5 bars, as what follows\n"
