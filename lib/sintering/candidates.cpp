@@ -14,7 +14,7 @@ namespace {
 
 constexpr double min_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
 constexpr double guess_margin = 2.0;   // of the approach that is guessed, that makes a candidate
-constexpr double limit_stiffness = 10.0;  // of the spring at a limit, over the stiffness of the contact there
+constexpr double limit_stiffness = 30.0;  // of the spring at a limit, over the stiffness of the contact there
 constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr double invisible_approach = 1e-20;  // of the mean radius; the roundin
                                               // force in a packing is thousands of times that of an isolated pair
 constexpr double splitting_factor = 0.125;  // Strang's relative error of a step's change of density over the square of the change
                                             // of its rate by coarsening: 1/24 where nothing else changes it
-constexpr double loose_limit = 1e-4;  // of the reduced radius, to which limits of necks are met that coarsening moves by far more
+constexpr double loose_limit = 3e-4;  // of the reduced radius, to which limits of necks are met that coarsening moves by far more
 constexpr double tightening = 0.2;    // of the tolerance, from one pass over them to the next
 constexpr double harmless_splitting = 1e-3;  // of the tolerance, change of density by that in a step that needs no control
 constexpr double same_time = 1e-12;         // relative: the rounding of the time that is left of a schedule

@@ -148,6 +148,22 @@ TEST_CASE("necks: a sphere inside another adds nothing, and one sunk in beyond i
     }
 }
 
+TEST_CASE("necks: over a gap a neck is a cylinder less the caps that reach into it; a record makes it a contact") {
+    const double d = 2.2, a = 0.5, s = std::sqrt(1.0 - a * a), h = 1.0 - s;
+    State state = make_state({Vec3(5, 5, 5), Vec3(5 + d, 5, 5)}, {1.0, 1.0}, 10.0, false);
+    CHECK(physics::recorded_contacts(state).pairs.empty());
+    state.necks = kiln::Necks{{{{1, 0}}}, {{{0, 0, 0}}}, {a}, {}};
+    const physics::RecordedContacts contacts = physics::recorded_contacts(state);
+    REQUIRE(contacts.pairs.size() == 1);
+    CHECK(contacts.overlap.front() == relative(a * a / 2.0, 1e-12));
+    UnionVolume volume = volume_of(state, contacts.pairs);
+    const double expected = 2.0 * sphere_volume(1.0) + pi * a * a * (d - 2.0 * s) - 2.0 * pi * h * h * (1.0 - h / 3.0);
+    CHECK(volume.with_necks(std::vector{a}).value == relative(expected, 1e-12));
+    state.necks->radius.front() = 0.0;  // the two do not touch, whatever their spheres do
+    state.particles.position[1] = Vec3(6.9, 5, 5);
+    CHECK(physics::recorded_contacts(state).pairs.empty());
+}
+
 TEST_CASE("necks: where spheres and necks share space, points find the same as a fine grid, within the error they tell") {
     for (const unsigned seed : {1u, 2u}) {
         const State state = make_packing(3, seed, 2.4);
