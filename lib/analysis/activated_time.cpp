@@ -40,7 +40,7 @@ ActivatedTime::ActivatedTime(const FiringPath& path, const std::function<double(
 }
 
 double ActivatedTime::at(double time) const {
-    if (time <= path_.time.front()) return 0.0;
+    if (!(time > path_.time.front())) return 0.0;
     if (time >= path_.time.back()) return whole();
     const auto node = static_cast<std::size_t>(std::ranges::upper_bound(path_.time, time) - path_.time.begin()) - 1;
     const double x = (time - path_.time[node]) / (path_.time[node + 1] - path_.time[node]);
@@ -48,8 +48,8 @@ double ActivatedTime::at(double time) const {
 }
 
 double ActivatedTime::time_of(double integral) const {
-    if (integral <= 0.0) return path_.time.front();
-    if (integral >= whole()) return path_.time.back();
+    if (!(integral > 0.0)) return path_.time.front();  // nor does NaN have a time
+    if (!(integral < whole())) return path_.time.back();
     const auto node = static_cast<std::size_t>(std::ranges::upper_bound(integral_, integral) - integral_.begin()) - 1;
     const double part = (integral - integral_[node]) / (integral_[node + 1] - integral_[node]);
     return path_.time[node] + place_of(part, growth_[node]) * (path_.time[node + 1] - path_.time[node]);

@@ -2,6 +2,7 @@
 #include "analysis/monotone_curve.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kiln::analysis {
 
@@ -30,6 +31,7 @@ MonotoneCurve::MonotoneCurve(const std::vector<double>& x, const std::vector<dou
 }
 
 double MonotoneCurve::at(double x) const {
+    if (std::isnan(x)) return x;
     if (x <= x_.front()) return y_.front();
     if (x >= x_.back()) return y_.back();
     const auto after = static_cast<std::size_t>(std::ranges::upper_bound(x_, x) - x_.begin());

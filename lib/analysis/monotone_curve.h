@@ -12,6 +12,7 @@ class MonotoneCurve {
     /// x ascending, at least one point; of points with the same x the last one counts.
     MonotoneCurve(const std::vector<double>& x, const std::vector<double>& y);
 
+    /// NaN at NaN.
     double at(double x) const;
 
    private:

@@ -103,6 +103,11 @@ TEST_CASE("kinetics: the integral of an activated rate is the quadrature's, and 
     CHECK(time.whole() == relative(firing.integral(0.0, 12000.0, rate), 2e-6));
     CHECK(time.at(-5.0) == 0.0);
     CHECK(time.time_of(2.0 * time.whole()) == 12000.0);
+    // A fit may try constants whose rates are beyond all numbers.
+    CHECK(time.time_of(std::nan("")) == 0.0);
+    const ActivatedTime infinite(path, [](double) { return std::numeric_limits<double>::infinity(); });
+    CHECK_FALSE(infinite.time_of(1.0) < 0.0);  // no number, or one of the firing, but nothing beyond its nodes is read
+    CHECK(std::isnan(MonotoneCurve({0.0, 1.0}, {0.0, 1.0}).at(std::nan(""))));
 }
 
 TEST_CASE("kinetics: where a cubic passes a density, and how fast; noise is averaged, not differentiated") {
