@@ -28,8 +28,6 @@ constexpr double invisible_approach = 1e-20;  // of the mean radius; the roundin
                                               // force in a packing is thousands of times that of an isolated pair
 constexpr double splitting_factor = 0.125;  // Strang's relative error of a step's change of density over the square of the change
                                             // of its rate by coarsening: 1/24 where nothing else changes it
-constexpr double loose_limit = 3e-4;  // of the reduced radius, to which limits of necks are met that coarsening moves by far more
-constexpr double tightening = 0.2;    // of the tolerance, from one pass over them to the next
 constexpr double harmless_splitting = 1e-3;  // of the tolerance, change of density by that in a step that needs no control
 constexpr double same_time = 1e-12;         // relative: the rounding of the time that is left of a schedule
 constexpr std::size_t max_idle_steps = 100;
@@ -136,8 +134,6 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
                                 .pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_fraction : first_order_fraction),
                                 .second_tolerance = closely,
-                                .limit_accuracy = coarsening_ ? loose_limit : StepSettings().limit_accuracy,
-                                .limit_tightening = coarsening_ ? tightening : StepSettings().limit_tightening,
                                 .balance_first = !settings_.second_order,
                                 .stop = settings_.stop};
     Problem problem{diffusion, clusters, settings, std::nullopt};

@@ -27,8 +27,8 @@ constexpr double min_single = 1e-3;        // a tenth of it is typical; within t
 constexpr double max_single = 0.5;
 constexpr double sharpening = 0.1;         // of what linear solves may leave, where that still unbalances a particle
 constexpr double limit_stiffness = 10.0;   // of the springs at limits of approach, over the mean tangent of the contacts
+constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a limit of approach is met
 constexpr int max_limit_passes = 60;
-constexpr double min_tolerance = 1e-4;     // of a motion, that limits ask for
 constexpr double coarse_contrast = 30.0;   // of diffusion, that makes a coarse space pay
 constexpr double single_contrast = 100.0;  // of diffusion, up to which single precision resolves the soft contacts beside the stiff
 
@@ -157,7 +157,9 @@ void SinterStep::start_limits() {
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
         limits_.add(row, pair.limit,
-                    std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(start, reached)),  // as if alone
+                    pair.spring > 0.0 ? 0.0
+                                          : std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(
+                                                                                                start, reached)),  // as if alone
                     pair.spring > 0.0 ? pair.spring : spring);
     }
 }
@@ -284,18 +286,13 @@ bool SinterStep::newton(double tolerance, double balanced, bool balance, Motion&
 
 bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepReport& report) {
     const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
-    // A motion that only predicts meets limits as loosely as it is solved, where they may be loose at all.
-    const double accuracy =
-        settings_.limit_accuracy * (settings_.limit_tightening < 1.0 ? std::max(1.0, tolerance / settings_.second_tolerance) : 1.0);
     bool converged = newton(tolerance, balanced, balance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
-            [&](std::size_t row) { return accuracy * step_[row].reduced_radius; });
+            [&](std::size_t row) { return step_[row].spring > 0.0 ? HUGE_VAL : limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == max_limit_passes) return false;
-        // What one limit is missed by does not show in the error of the whole motion.
-        tolerance = std::min(tolerance, std::max(settings_.limit_tightening * tolerance, min_tolerance));
         converged = newton(tolerance, balanced, balance, motion, report);
     }
     return converged;

@@ -31,7 +31,7 @@ struct PairStep {
     double cubic;            // K/I, force/m3
     double shear;            // tangential viscosity over h and I, force/m2
     double limit;            // largest approach, m; infinity for none
-    double spring;           // stiffness of the spring at the limit, force/m; zero for that of most contacts
+    double spring;           // stiffness of the spring that is the limit, force/m; zero for one that is met exactly
     double slowness;         // integral of Delta over the step of the fastest pair over that of this one; zero where none diffuses
 };
 
@@ -39,8 +39,6 @@ struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
-    double limit_accuracy = 1e-7;    // of the reduced radius, to which a limit of approach is met
-    double limit_tightening = 1.0;   // of the tolerance, from one pass over the limits to the next
     bool balance_first = true;  // judge the motion of first order particle by particle; not needed where it only predicts
     StopRequest stop;                                 // asked between iterations; the step then throws Interrupted
 };

@@ -20,6 +20,8 @@ namespace {
 constexpr double list_margin = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
 constexpr double margin_ahead = 2.0;    // of the travel of a fast particle, that the margin leaves
 constexpr std::size_t few = 100;        // of so many particles one may need a new list and the others keep theirs
+constexpr double candidate_factor = 2.0;   // of the motion, see Candidates::choose
+constexpr double candidate_reach = 0.02;   // of the mean radius, for each of a pair, the same
 constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
 constexpr const char* offset_name = "offset";  // array of necks in a checkpoint
 
@@ -195,6 +197,7 @@ double SinteringBody::offset(const Pair& pair) const {
 
 void SinteringBody::set_grains(const Grains& grains) {
     std::vector<double>& radius = state_.particles.radius;
+    grains_change_ = true;
     bool listed = true;  // all pairs that may come to touch
     for (std::size_t row = 0; row < size(); ++row) {
         listed = listed && (radius[row] > 0.0 || grains.radius[row] == 0.0);
@@ -254,11 +257,15 @@ double SinteringBody::travel(std::size_t row, const Motion& motion) const {
 }
 
 void SinteringBody::cover(const Motion& motion, double factor) {
+    // Candidates are chosen by twice the motion that is guessed and a distance to spare: where growing grains use up margins, all
+    // of those are to be in the list, so that a run does not depend on when it was made.
+    const double spare = grains_change_ ? candidate_reach * mean_radius_ : 0.0;
+    if (grains_change_) factor = std::max(factor, candidate_factor);
     std::vector<std::uint8_t> beyond(size());
     std::size_t count = 0;
 #pragma omp parallel for schedule(static) reduction(+ : count) if (size() >= worth_threads)
     for (std::size_t row = 0; row < size(); ++row)
-        count += beyond[row] = factor * travel(row, motion) + growth(row) > margin_[row];
+        count += beyond[row] = factor * travel(row, motion) + growth(row) + spare > margin_[row];
     if (count == 0) return;
     const bool all = count > size() / few;
     std::vector<std::int32_t> rows;

@@ -115,6 +115,7 @@ class SinteringBody {
     State state_;
     std::vector<std::int32_t> order_;  // row in the input of each present row
     std::vector<Pair> pairs_;
+    bool grains_change_ = false;
     std::vector<double> offset_;  // m, a row a pair; none where no neck has a history
     std::vector<std::size_t> first_pair_;  // row of the first pair of each particle, where there are offsets
     std::vector<Pair> record_;           // see Grains
