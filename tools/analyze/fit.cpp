@@ -26,7 +26,7 @@ constexpr const char* fit_footer =
     "  law, formula, source, weighting, degrees_of_freedom, r_squared, aic, aicc\n"
     "  E0 (Pa), b or Pc       the parameters; with standard_errors, covariance and confidence_intervals\n"
     "                         (95 %, Student's t)\n"
-    "  dense_modulus          E0 by a name that jq can say, with dense_modulus_error and dense_modulus_interval\n"
+    "  dense_modulus          E0 by a name that jq can say, so ..._error and ..._interval\n"
     "  points, residuals      Pa, measured minus law\n"
     "  band                   {relative_density, young_modulus, and 95 % intervals (Pa) of the law,\n"
     "                         confidence, and of one more point, prediction}\n"

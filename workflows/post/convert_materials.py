@@ -20,7 +20,9 @@ ALUMINA = {
     "grain_boundary_diffusion": {"prefactor": 1.3e-8, "activation_energy": 475e3}
 }
 DIHEDRAL = {"name": "alumina-dihedral", "surface_energy": 0.905, "atomic_volume": 2.11e-29,
-            "dihedral_angle": 138.0 * math.pi / 180.0}
+            "dihedral_angle": 138.0 * math.pi / 180.0,
+            "surface_diffusion": {"prefactor": 3e-10 * 0.09, "activation_energy": 313.8e3},
+            "boundary_mobility": {"prefactor": 0.01, "activation_energy": 443e3}}
 BUILT_IN = {"alumina": ALUMINA, "alumina-dihedral": {**ALUMINA, **DIHEDRAL}}
 MOST_TYPES = 1000  # more than any file has; a larger number is a mistake
 

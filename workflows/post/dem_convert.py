@@ -212,16 +212,6 @@ def with_history(documents, given):
         yield document
 
 
-def without_necks(documents):
-    """The states without the necks of their record, for a format that has no place for them."""
-    warned = False
-    for document in documents:
-        if "necks" in document and not warned:
-            warn("the recorded necks are left out, which only dem-state holds; without them a neck is that of the overlap")
-            warned = True
-        yield {key: value for key, value in document.items() if key != "necks"}
-
-
 def parser():
     parse = argparse.ArgumentParser(prog="dem-convert",
                                     description="Converts states into the formats of neighbouring programs and back.",
@@ -292,7 +282,7 @@ def main(arguments=None):
         refuse_unused(parse, given, source, target)
         given.foreign = target != "dem"
         documents = with_history(states(given.source, source, given), given)
-        WRITERS[target](given.target, without_necks(documents) if given.foreign else documents, given)
+        WRITERS[target](given.target, documents, given)
     except BrokenPipeError:
         sys.stderr.close()  # the reader of the pipe has gone
         return 141
