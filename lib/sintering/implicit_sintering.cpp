@@ -251,6 +251,7 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
     const double start = body_.time();
     double duration = 0.0;
     Trial trial;
+    const double planned_duration = next_duration_;
     if (coarsening_) start_ = body_.grains();
     try {
         if (nothing_moves(start, latest_time)) {
@@ -260,6 +261,7 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
             if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
         }
     } catch (...) {
+        next_duration_ = planned_duration;  // a run that was stopped on its way to a density resumes as it began
         if (coarsening_) body_.set_grains(start_);  // the state stays as it was before the step
         throw;
     }

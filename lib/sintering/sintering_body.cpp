@@ -259,7 +259,7 @@ double SinteringBody::travel(std::size_t row, const Motion& motion) const {
 void SinteringBody::cover(const Motion& motion, double factor) {
     // Candidates are chosen by twice the motion that is guessed and a distance to spare: where growing grains use up margins, all
     // of those are to be in the list, so that a run does not depend on when it was made.
-    const double spare = grains_change_ ? candidate_reach * mean_radius_ : 0.0;
+    const double spare = grains_change_ ? (candidate_reach + motion.strain.cwiseAbs().maxCoeff()) * mean_radius_ : 0.0;
     if (grains_change_) factor = std::max(factor, candidate_factor);
     std::vector<std::uint8_t> beyond(size());
     std::size_t count = 0;

@@ -200,6 +200,25 @@ TEST_CASE("a step that is asked to stop leaves the state as it was") {
     CHECK(sintering.state().particles.position == before.particles.position);
 }
 
+TEST_CASE("a step that is stopped on its way to a density leaves all that a checkpoint holds as it was") {
+    int stops = 0;
+    for (int allowed = 0;; allowed += 7) {  // stopped later and later, until the density is reached
+        SinteringSettings wanted = settings();
+        int asked = 0;
+        wanted.stop = [&] { return ++asked > allowed; };
+        ImplicitSintering sintering(random_packing(60, 0.5, 1.0), wanted);
+        const auto before = sintering.checkpoint().numbers;
+        try {
+            sintering.advance(1e9, 0.5005);
+            break;
+        } catch (const Interrupted&) {
+            ++stops;
+        }
+        CHECK(sintering.checkpoint().numbers == before);
+    }
+    CHECK(stops > 5);
+}
+
 TEST_CASE("a pressure that has no face to act on is refused by every method") {
     SinteringSettings wanted = settings();
     wanted.pressure = Vec3(1e6, 0.0, 0.0);
