@@ -156,11 +156,10 @@ void SinterStep::start_limits() {
         const PairStep& pair = step_[row];
         if (std::isinf(pair.limit)) continue;
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
-        limits_.add(row, pair.limit,
-                    pair.spring > 0.0 ? 0.0
-                                          : std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(
-                                                                                                start, reached)),  // as if alone
-                    pair.spring > 0.0 ? pair.spring : spring);
+        const bool yields = pair.spring > 0.0;
+        const double alone =  // force at the limit if nothing else held the pair
+            std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(start, reached));
+        limits_.add(row, pair.limit, yields ? 0.0 : alone, yields ? pair.spring : spring);
     }
 }
 
@@ -240,8 +239,8 @@ double SinterStep::line_search(double slope, Motion& motion) {
     return length;
 }
 
-/// balanced: largest imbalance() that will do.
-bool SinterStep::newton(double tolerance, double balanced, bool balance, Motion& motion, StepReport& report) {
+bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepReport& report) {
+    const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
     double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
     forces(motion, true);
     for (int iteration = 0; iteration < max_newton; ++iteration) {
@@ -285,15 +284,14 @@ bool SinterStep::newton(double tolerance, double balanced, bool balance, Motion&
 }
 
 bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepReport& report) {
-    const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
-    bool converged = newton(tolerance, balanced, balance, motion, report);
+    bool converged = newton(tolerance, balance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
             [&](std::size_t row) { return step_[row].spring > 0.0 ? HUGE_VAL : limit_accuracy * step_[row].reduced_radius; });
         if (missed <= 1.0) break;
         if (pass == max_limit_passes) return false;
-        converged = newton(tolerance, balanced, balance, motion, report);
+        converged = newton(tolerance, balance, motion, report);
     }
     return converged;
 }

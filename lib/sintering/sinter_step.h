@@ -86,7 +86,7 @@ class SinterStep {
     void start_limits();
     /// balance: also the forces on each particle are to be in balance.
     bool minimise(double tolerance, bool balance, Motion& motion, StepReport& report);
-    bool newton(double tolerance, double balanced, bool balance, Motion& motion, StepReport& report);
+    bool newton(double tolerance, bool balance, Motion& motion, StepReport& report);
     double line_search(double slope, Motion& motion);
     /// The forces that a motion leaves unbalanced, and the stiffness there.
     void forces(const Motion& motion, bool secant);

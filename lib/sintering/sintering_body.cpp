@@ -166,10 +166,11 @@ void SinteringBody::took_list() {
 
 /// Brings list and record together: pairs without a grain leave the list, those of the record are in it wherever they are.
 void SinteringBody::list_record() {
-    const std::vector<double>& radius = state_.particles.radius;
-    std::erase_if(pairs_, [&](const Pair& pair) {
-        return radius[static_cast<std::size_t>(pair.i)] == 0.0 || radius[static_cast<std::size_t>(pair.j)] == 0.0;
-    });
+    if (grains_change_)
+        std::erase_if(pairs_, [&](const Pair& pair) {
+            const auto [first, second] = radii(pair);
+            return first == 0.0 || second == 0.0;
+        });
     offset_.clear();
     if (record_.empty()) return;
     std::vector<Pair> all;
