@@ -29,6 +29,23 @@ def placed(sentence):
     return re.sub(r"^-(?=[:,])", "standard input", str(sentence))
 
 
+def ended(program, path, work):
+    """The exit status of a program that is work(): 0; 1 after the sentence of an error, which is about the path where the system
+    names none; 141 where the reader of a pipe has gone."""
+    try:
+        work()
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 141
+    except ConvertError as error:
+        print(f"{program}: {placed(error)}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"{program}: {error.filename or path}: {error.strerror or error}", file=sys.stderr)
+        return 1
+    return 0
+
+
 class Voice:
     """Where warnings go: once each, to stderr, or nowhere."""
 

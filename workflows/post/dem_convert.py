@@ -13,7 +13,7 @@ import convert_xyz
 import dem_state
 import units
 from convert_check import check
-from convert_common import ConvertError, clipped, opened, placed, unpacked, warn, written
+from convert_common import ConvertError, clipped, ended, opened, unpacked, warn, written
 from convert_found import completed
 
 EXAMPLES = """formats, by the end of the name or --from and --to:
@@ -276,23 +276,16 @@ def main(arguments=None):
     words = sys.argv[1:] if arguments is None else arguments
     given.shown = [word for word in words if word not in (given.source, given.target, "--text", "-q", "--quiet")]
     warn.quiet, warn.said = given.quiet, []
-    try:
-        source = format_of(given.source, given.reads, READERS, "--from")
-        target = format_of(given.target, given.writes, WRITERS, "--to")
-        refuse_unused(parse, given, source, target)
-        given.foreign = target != "dem"
-        documents = with_history(states(given.source, source, given), given)
-        WRITERS[target](given.target, documents, given)
-    except BrokenPipeError:
-        sys.stderr.close()  # the reader of the pipe has gone
-        return 141
-    except ConvertError as error:
-        print(f"dem-convert: {placed(error)}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"dem-convert: {error.filename or given.source}: {error.strerror or error}", file=sys.stderr)
-        return 1
-    return 0
+    return ended("dem-convert", given.source, lambda: convert(parse, given))
+
+
+def convert(parse, given):
+    source = format_of(given.source, given.reads, READERS, "--from")
+    target = format_of(given.target, given.writes, WRITERS, "--to")
+    refuse_unused(parse, given, source, target)
+    given.foreign = target != "dem"
+    documents = with_history(states(given.source, source, given), given)
+    WRITERS[target](given.target, documents, given)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import zlib
 import numpy
 
 import dem_state
-from convert_common import ConvertError, bounds, particle_arrays, periodic_axes, written
+from convert_common import ConvertError, bounds, ended, particle_arrays, periodic_axes, written
 from dem_convert import documents_of
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -460,25 +460,18 @@ def parser():
 
 def main():
     given = parser().parse_args()
-    try:
-        size = given.size - sum(map(len, scripts(given.three))) - 100_000  # what else stands in a page
-        scene = Scene(read_states(given.states))
-        left = scene.fit(size)
-        if left:
-            print(f"dem-view: warning: the page holds {left}, to stay below --size", file=sys.stderr)
-        names = ", ".join(os.path.basename(path) for path in given.states if path != "-")
-        with written(given.output) as stream:
-            stream.write(page(scene, given.title or names or "States", given.three))
-    except BrokenPipeError:
-        sys.stderr.close()  # the reader of the pipe has gone
-        return 141
-    except ConvertError as error:
-        print(f"dem-view: {error}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"dem-view: {error.filename or given.output}: {error.strerror or error}", file=sys.stderr)
-        return 1
-    return 0
+    return ended("dem-view", given.output, lambda: view(given))
+
+
+def view(given):
+    size = given.size - sum(map(len, scripts(given.three))) - 100_000  # what else stands in a page
+    scene = Scene(read_states(given.states))
+    left = scene.fit(size)
+    if left:
+        print(f"dem-view: warning: the page holds {left}, to stay below --size", file=sys.stderr)
+    names = ", ".join(os.path.basename(path) for path in given.states if path != "-")
+    with written(given.output) as stream:
+        stream.write(page(scene, given.title or names or "States", given.three))
 
 
 if __name__ == "__main__":
