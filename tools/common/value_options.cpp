@@ -41,4 +41,12 @@ std::size_t choice_from(const std::string& option, const std::string& text, cons
     throw CLI::ValidationError(option, "'" + text + "' is none of " + list);
 }
 
+std::array<bool, 3> axes_from(const std::string& option, const std::string& text) {
+    if (text.find_first_not_of("xyz") != std::string::npos)
+        throw CLI::ValidationError(option + ": '" + text + "' is not made of the axes x, y and z");
+    std::array<bool, 3> axes{false, false, false};
+    for (const char axis : text) axes[static_cast<std::size_t>(axis - 'x')] = true;
+    return axes;
+}
+
 }  // namespace kiln::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <concepts>
@@ -38,6 +39,10 @@ std::string not_within(const Bounds<double>& bounds);
 
 /// The same for help texts: " [1 to 1000]", " [above 0]", " [0 or more]", nothing.
 std::string known_bounds(const Bounds<double>& bounds);
+
+/// The axes that a text such as "xy" names; none for an empty one. Throws CLI::ValidationError "OPTION: 'xw' is not made of the
+/// axes x, y and z".
+std::array<bool, 3> axes_from(const std::string& option, const std::string& text);
 
 /// The number that a text says. Throws CLI::ValidationError "OPTION: 'many' is not a number" or "OPTION: 5 is not between 0 and 1".
 template <typename Number>

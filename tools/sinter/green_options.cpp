@@ -154,9 +154,8 @@ void GreenOptions::add_spheres(CLI::App& app) {
     app.add_option_function<std::string>(
            "--periodic",
            [this](const std::string& text) {
-               if (text.empty() || text.find_first_not_of("xyz") != std::string::npos)
-                   refuse("--periodic: '" + text + "' is not made of the axes x, y and z");
-               for (const char axis : text) body.periodic[static_cast<std::size_t>(axis - 'x')] = true;
+               if (text.empty()) refuse("--periodic: '' is not made of the axes x, y and z");
+               body.periodic = cli::axes_from("--periodic", text);
            },
            "Axes along which --box is periodic, such as xyz; the body is free along the others")
         ->type_name("AXES")

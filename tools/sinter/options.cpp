@@ -143,8 +143,7 @@ void Options::check(const CLI::App& app, const std::string& output) {
         if (!(time >= 0.0)) throw CLI::ValidationError("--at-time: a time is not negative");
     if (!(every >= 0.0)) throw CLI::ValidationError("--every: a span of time is not negative");
     check_list({tolerance}, 0.0, 1.0, "--tolerance");
-    if (fixed.find_first_not_of("xyz") != std::string::npos)
-        throw CLI::ValidationError("--fix: '" + fixed + "' is not made of the axes x, y and z");
+    cli::axes_from("--fix", fixed);
     if (!(pressure.empty() || pressure.size() == 1 || pressure.size() == 3))
         throw CLI::ValidationError("--pressure: one value or three are required, for x,y,z");
     if (faces == sintering::Faces::free && (!fixed.empty() || !pressure.empty()))
@@ -187,7 +186,7 @@ sintering::SinteringSettings Options::settings(double start) const {
     settings.schedule = programme_ ? programme_->from(start) : physics::Schedule::hold(temperature);
     settings.constants = constants;
     settings.faces = faces;
-    for (const char axis : fixed) settings.fixed[static_cast<std::size_t>(axis - 'x')] = true;
+    settings.fixed = cli::axes_from("--fix", fixed);
     for (std::size_t axis = 0; axis < 3 && !pressure.empty(); ++axis)
         settings.pressure[static_cast<Eigen::Index>(axis)] = pressure[pressure.size() == 1 ? 0 : axis];
     settings.tolerance = tolerance;
