@@ -155,7 +155,8 @@ $(BUILD)/man/%.1: $(BUILD)/bin/% docs/help-to-man.sh
 	@mkdir -p $(@D)
 	docs/help-to-man.sh $< > $@
 
-$(POST_TOOLS:%=$(BUILD)/man/%.1): $(BUILD)/man/%.1: workflows/post/% $(wildcard workflows/post/*.py) docs/help-to-man.sh
+$(POST_TOOLS:%=$(BUILD)/man/%.1): $(BUILD)/man/%.1: workflows/post/% $(wildcard workflows/post/*.py python/kiln/*.py) \
+    docs/help-to-man.sh
 	@mkdir -p $(@D)
 	PYTHONDONTWRITEBYTECODE=1 docs/help-to-man.sh $< > $@
 

@@ -5,6 +5,8 @@ PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio libj
 # Neighbours that tests read back with, a browser, and a workflow engine: large, so only `make test` installs them, and tests skip
 # without.
 NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
+# What single tests need and are skipped without: `make optional-packages` installs them.
+OPTIONAL_PACKAGES := mypy python3-pandas
 # Further checks, by hand only: `make fuzz`, `make tsan`, `make tidy`.
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
 TSAN_PACKAGES := $(FUZZ_PACKAGES) libomp-14-dev
@@ -34,6 +36,10 @@ $(BUILD)/packages-present: packages.mk
 	fi
 	@$(call install_missing,$(PACKAGES))
 	@touch $@
+
+.PHONY: optional-packages
+optional-packages:              ## install what single tests are skipped without: mypy, pandas
+	@$(call install_missing,$(OPTIONAL_PACKAGES))
 
 # Without these the tests that need them are skipped.
 $(BUILD)/neighbours-present: packages.mk | $(BUILD)/packages-present

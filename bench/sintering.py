@@ -18,7 +18,7 @@ import time
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PROGRAMS = os.path.join(os.environ.get("BUILD", os.path.join(ROOT, "build")), "bin")
 sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
-from dem_state import read, relative_density  # noqa: E402
+import kiln  # noqa: E402
 from style import ACCENT, LINE, REFERENCE, pyplot, save  # noqa: E402
 
 STARTS = {
@@ -53,7 +53,7 @@ def sinter(folder, green, options, environment=None):
     command = ["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green]
     usage = run(command, environment)
     with open(states, "rb") as stream:
-        densities = [relative_density(state) for state in read(stream)]
+        densities = [kiln.relative_density(state) for state in kiln.documents(stream)]
     with open(history, encoding="utf-8") as stream:
         steps = [json.loads(line) for line in stream]
     return densities, usage, steps

@@ -20,8 +20,8 @@ setup() { cd "$BATS_FILE_TMPDIR"; }
     run -0 "$PYTHON" - <<END
 import json, sys
 sys.path.insert(0, "$ROOT/workflows/post")
-from dem_state import read_file
-green, first, last = read_file("green.kiln") + read_file("grown.kiln")
+import kiln
+green, first, last = kiln.read("green.kiln") + kiln.read("grown.kiln")
 solid = [(state["particles"]["radius"] ** 3).sum() for state in (green, first, last)]
 assert max(abs(each / solid[0] - 1) for each in solid) < 1e-12
 gone = {each for line in open("history.jsonl") for each in json.loads(line)["vanished"]}
@@ -76,8 +76,8 @@ END
     run -0 "$PYTHON" - <<END
 import sys
 sys.path.insert(0, "$ROOT/workflows/post")
-from dem_state import read_file
-state, bonded = read_file("grown.kiln")[1], read_file("bonded.kiln")[0]
+import kiln
+state, bonded = kiln.read("grown.kiln")[1], kiln.read("bonded.kiln")[0]
 key = lambda pair, image: (*pair.tolist(), *image.tolist())
 bonds = {key(p, i): r for p, i, r in zip(bonded["bonds"]["pair"], bonded["bonds"]["image"], bonded["bonds"]["radius"])}
 necks = [(key(p, i), r) for p, i, r in zip(state["necks"]["pair"], state["necks"]["image"], state["necks"]["radius"]) if r > 0]

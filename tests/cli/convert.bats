@@ -22,8 +22,8 @@ same() {
     "$PYTHON" - "$@" <<'END'
 import sys
 import numpy
-from dem_state import read_file
-first, second = (read_file(path) for path in sys.argv[1:3])
+import kiln
+first, second = (kiln.read(path) for path in sys.argv[1:3])
 assert len(first) == len(second) > 0, (len(first), len(second))
 for a, b in zip(first, second):
     assert a["time"] == b["time"], (a["time"], b["time"])
@@ -49,8 +49,8 @@ END
     "$CONVERT" -q --bond-radius 28nm bare.data bare.kiln
     run -0 "$PYTHON" -c '
 import numpy
-from dem_state import read_file
-(a,), (b,) = read_file("bare.kiln"), read_file("second.kiln")
+import kiln
+(a,), (b,) = kiln.read("bare.kiln"), kiln.read("second.kiln")
 print((a["bonds"]["pair"] == b["bonds"]["pair"]).all(), (a["bonds"]["image"] == b["bonds"]["image"]).all(), set(a["bonds"]["radius"].tolist()))'
     assert_output "True True {2.8e-08}"
     run -1 "$CONVERT" -q bare.data -
@@ -80,8 +80,8 @@ print((a["bonds"]["pair"] == b["bonds"]["pair"]).all(), (a["bonds"]["image"] == 
     sed -E 's/length [^ ]+ //' second.data >without.data
     "$CONVERT" without.data without.kiln
     run -0 "$PYTHON" -c '
-from dem_state import read_file
-(a,), (b,) = read_file("without.kiln"), read_file("second.kiln")
+import kiln
+(a,), (b,) = kiln.read("without.kiln"), kiln.read("second.kiln")
 print(abs(a["bonds"]["length"] - b["bonds"]["length"]).max() < 1e-15)'
     assert_output True
 }
@@ -186,8 +186,8 @@ END
     run -0 "$PYTHON" - <<'END'
 import numpy
 from meshio.vtu import _vtu
-from dem_state import read_file
-(state,) = read_file("bent.kiln")
+import kiln
+(state,) = kiln.read("bent.kiln")
 mesh = _vtu.read("bent-0001.vtu")
 print({block.type: len(block.data) for block in mesh.cells} == {"vertex": len(state["particles"]["radius"]), "line": len(state["bonds"]["radius"])})
 print(numpy.array_equal(mesh.points, state["particles"]["position"]), numpy.array_equal(mesh.point_data["displacement"], state["particles"]["displacement"]))
@@ -216,8 +216,8 @@ END
     run -0 "$PYTHON" - <<'END'
 import numpy
 from meshio.vtu import _vtu
-from dem_state import read_file
-(state,) = read_file("second.kiln")
+import kiln
+(state,) = kiln.read("second.kiln")
 bonds, through = state["bonds"], state["bonds"]["image"].any(axis=1)
 for mode in ("ghosts", "cut"):
     mesh = _vtu.read(f"{mode}.vtu")

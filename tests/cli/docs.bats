@@ -53,6 +53,12 @@ run_page() {
     jq -e '.history[-1].arguments == ["--volume", "cap-corrected"]' <(head -1 mine/0.88/bonded.kiln)
 }
 
+@test "pipes, states and results in Python are as the page says" {
+    run_page docs/python.md
+    assert_line --regexp "^0\.80  [0-9]+ GPa"
+    assert_line --regexp "^0\.(1|10000|09999)[0-9]*$"
+}
+
 @test "files go to other programs and come back as the page says" {
     run_page docs/formats.md
     assert_line '["alumina","zirconia"]'

@@ -28,6 +28,14 @@ complete_line() {
     for name in sinter bondify bend analyze dem-convert dem-view; do assert_line "$name"; done
     "$SINTER" green -n 20 | "$STAGE/usr/bin/dem-convert" --to csv - "$BATS_TEST_TMPDIR/out.csv"
     run -0 wc -l <"$BATS_TEST_TMPDIR/out.csv"
+    # The Python package beside them finds the programs of its own installation.
+    cd "$BATS_TEST_TMPDIR"
+    cat >installed.py <<'END'
+import kiln
+print(kiln.find("sinter"), len(kiln.run("sinter green -n 20")[0].radius))
+END
+    run -0 env -u SINTER PYTHONPATH="$STAGE/usr/lib/python3/dist-packages" "$PYTHON" installed.py
+    assert_output "$STAGE/usr/bin/sinter 20"
     run -0 "$STAGE/usr/bin/dem-view" --version
     assert_output "$("$ANALYZE" info --version | sed 's/^analyze info/dem-view/')"
 }
@@ -41,6 +49,7 @@ complete_line() {
     assert_line --regexp "^Depends: .*libstdc\+\+6"
     dpkg-deb --extract "$package" "$BATS_TEST_TMPDIR/unpacked"
     run -0 --separate-stderr chain_of "$BATS_TEST_TMPDIR/unpacked/usr/bin"
+    [ -e "$BATS_TEST_TMPDIR/unpacked/usr/lib/python3/dist-packages/kiln/py.typed" ]
     jq -e '.young_modulus > 1e9' <<<"$output"
     [ "$(id -u)" = 0 ] || skip "only root installs"
     mkdir -p "$BATS_TEST_TMPDIR/root/var/lib/dpkg/"{info,updates}

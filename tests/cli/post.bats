@@ -8,17 +8,17 @@ setup() {
     cd "$BATS_TEST_TMPDIR"
     cat >copy.py <<'END'
 import sys
-from dem_state import read, write
-for document in read(sys.stdin.buffer):
-    write(sys.stdout.buffer, document, text="--text" in sys.argv)
+import kiln
+for document in kiln.documents(sys.stdin.buffer):
+    kiln.write(sys.stdout.buffer, document, text="--text" in sys.argv)
 END
     cat >random_state.py <<'END'
 import sys
 import numpy
-from dem_state import write
+import kiln
 random = numpy.random.default_rng(7)
 for count, bonds in ((1, 0), (50, 80)):
-    write(sys.stdout.buffer, {
+    kiln.write(sys.stdout.buffer, {
         "format": "dem-state", "version": 1, "units": "SI", "time": 0.1, "note": "überall",
         "box": {"origin": [0, 0, 0], "vectors": [[1e-6, 0, 0], [0, 1e-6, 0], [0, 0, 1e-6]], "periodic": [True, False, True]},
         "particles": {"position": random.random((count, 3)) * 1e-6, "radius": 1e-9 + random.random(count) * 1e-8,
@@ -51,8 +51,8 @@ END
     "$PYTHON" random_state.py | "$ANALYZE" select --index 2 >state.kiln
     run -0 "$PYTHON" - <<'END'
 import numpy
-from dem_state import read_file
-(state,) = read_file("state.kiln")
+import kiln
+(state,) = kiln.read("state.kiln")
 particles, bonds = state["particles"], state["bonds"]
 print(particles["id"].dtype, particles["position"].shape, bonds["image"].dtype)
 print(particles["tensor"].dtype, particles["tensor"].shape)
@@ -80,8 +80,8 @@ with open("states.kiln", "rb") as stream:
     echo '{"format":"dem-bend","version":1,"particles":50}' >>mixed.kiln
     "$PYTHON" random_state.py | "$PYTHON" copy.py --text >>mixed.kiln
     run -0 "$PYTHON" -c '
-from dem_state import read_file
-for document in read_file("mixed.kiln"):
+import kiln
+for document in kiln.read("mixed.kiln"):
     print(document["format"], document["particles"] if document["format"] == "dem-bend" else len(document["particles"]["radius"]))'
     assert_output $'dem-state 1\ndem-state 50\ndem-bend 50\ndem-state 1\ndem-state 50'
 }

@@ -18,11 +18,11 @@ setup() {
 write_nearest() {
     cat >nearest.py <<'END'
 import sys
-from dem_state import read, relative_density, write
+import kiln
 wanted, text = float(sys.argv[1]), "--text" in sys.argv
-states = list(read(sys.stdin.buffer))
-nearest = min(states, key=lambda state: abs(relative_density(state) - wanted))
-write(sys.stdout.buffer, nearest, text)
+states = list(kiln.documents(sys.stdin.buffer))
+nearest = min(states, key=lambda state: abs(kiln.relative_density(state) - wanted))
+kiln.write(sys.stdout.buffer, nearest, text)
 END
 }
 

@@ -52,10 +52,10 @@ END
     run -0 "$PYTHON" - <<'END'
 import json, subprocess, os
 import numpy
-from dem_state import read_file
+import kiln
 from dem_view import Body
 densities = subprocess.run([os.environ["ANALYZE"], "density", "sintered.kiln"], capture_output=True, check=True, text=True).stdout
-for line, state, bonded in zip(densities.splitlines(), read_file("sintered.kiln"), read_file("bonded.kiln")):
+for line, state, bonded in zip(densities.splitlines(), kiln.read("sintered.kiln"), kiln.read("bonded.kiln")):
     said, body, bonds = json.loads(line), Body(state, {}), Body(bonded, {})
     numpy.testing.assert_allclose(body.particles["coordination"].mean(), said["coordination_number"], rtol=1e-12)
     numpy.testing.assert_array_equal(body.particles["coordination"], bonds.particles["coordination"])
@@ -110,7 +110,7 @@ END
 import sys
 import numpy
 from browser import Browser
-from dem_state import read_file
+import kiln
 TOOLS = """
   const view = document.querySelector(".dem-view").view;
   const settled = async () => { do await new Promise(done => setTimeout(done, 40));
@@ -128,7 +128,7 @@ TOOLS = """
 with Browser(sys.argv[1]) as page:
     page.wait("document.querySelector('.dem-view').view?.fine")
     page.run("(() => {" + TOOLS + "Object.assign(window, { view, settled, set, pixels, ink, change }); })()")
-    states = [state for name in ("sintered", "bonded", "bent") for state in read_file(f"{name}.kiln")]
+    states = [state for name in ("sintered", "bonded", "bent") for state in kiln.read(f"{name}.kiln")]
     # A choice before the first state has been unpacked waits for it.
     page.run("(async () => { const state = view.state; view.state = undefined; await view.recolour(); view.state = state; })()")
     print("states", page.run("view.header.states.length") == len(states))

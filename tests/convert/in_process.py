@@ -10,7 +10,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
 import convert_common  # noqa: E402  (the path comes first)
 import dem_convert  # noqa: E402
-import dem_state  # noqa: E402
+import kiln  # noqa: E402
 
 GLASS = {"name": "lead glass", "density": 2500.0, "young_modulus": 7e10, "poisson_ratio": 0.22, "source": "invented"}
 STEEL = {"name": "steel", "density": 7850.0, "young_modulus": 2.1e11, "poisson_ratio": 0.3}
@@ -39,7 +39,7 @@ def converted(source, *options):
     status, warnings, error = convert(*options, source, target)
     if status:
         raise AssertionError(error)
-    return dem_state.read_file(target), warnings
+    return kiln.read(target), warnings
 
 
 def refused(source, *options):
@@ -102,5 +102,5 @@ def packing(periodic=(True, True, True), bonded=True, seed=1, first_id=0):
 def saved(path, *states):
     with open(path, "wb") as stream:
         for state in states:
-            dem_state.write(stream, state)
+            kiln.write(stream, state)
     return path

@@ -10,7 +10,7 @@ import tempfile
 
 import numpy
 from foreign import FORMATS
-from in_process import convert, dem_state, program
+from in_process import convert, kiln, program
 
 TIGHT = 1e-12  # relative; of sums and differences of the box
 UNKNOWN = {}  # what has to come out of a file of which any bytes are others
@@ -110,7 +110,7 @@ def outcome(case, folder):
         if case.sound:
             raise ValueError(f"is sound and was refused: {error}")
         return "refused", None
-    states = dem_state.read_file(target)
+    states = kiln.read(target)
     if case.right is None:
         raise ValueError("was taken, and had to be refused")
     for state in states if case.right is not UNKNOWN else ():

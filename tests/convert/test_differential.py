@@ -5,7 +5,7 @@ import tempfile
 import unittest
 
 import numpy
-from in_process import GLASS, STEEL, convert, converted, dem_state, packing, saved
+from in_process import GLASS, STEEL, convert, converted, kiln, packing, saved
 
 BODIES = {"periodic": (True, True, True), "free": (False, False, False), "film": (True, True, False)}
 # What each format holds of: temperature, contacts, constants of materials, bonds, arrays that nobody knows of particles and bonds.
@@ -166,7 +166,7 @@ class Differential(unittest.TestCase):
                 status, _, error = convert(*arguments)
                 self.assertEqual((status, error), (0, ""), name)
             source = target
-        (back, ) = dem_state.read_file(source)
+        (back, ) = kiln.read(source)
         self.compare("chain", "data", back, state, True)
 
     def test_without_a_title_the_state_itself_lends_the_rest(self):

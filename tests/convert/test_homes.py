@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 import numpy
-from in_process import ROOT, convert_common, dem_state, program, saved
+from in_process import ROOT, convert_common, kiln, program, saved
 
 import convert_materials  # noqa: E402  (in_process says where they are)
 import schedules  # noqa: E402
@@ -85,16 +85,16 @@ class Homes(unittest.TestCase):
             green = subprocess.run([program("SINTER"), "green", "-q", "-n", "60", "--method", "affine", "--compact-to", "0.6"],
                                    capture_output=True, check=True).stdout
             subprocess.run([program("BONDIFY"), "-q", "-o", bonded], input=green, check=True)
-            (state, ) = dem_state.read_file(bonded)
+            (state, ) = kiln.read(bonded)
             said = json.loads(subprocess.run([program("ANALYZE"), "info", bonded], capture_output=True, check=True).stdout)
-            self.assertAlmostEqual(dem_state.relative_density(state), said["relative_density"], delta=1e-12)
+            self.assertAlmostEqual(kiln.relative_density(state), said["relative_density"], delta=1e-12)
             bonds = state["bonds"]
             length = convert_common.neck_length(state, bonds["pair"], bonds["image"], bonds["radius"])
             numpy.testing.assert_allclose(length, bonds["length"], rtol=0, atol=1e-20)
             del bonds["volume"]
             bare = saved(os.path.join(folder, "bare.kiln"), state)
             said = json.loads(subprocess.run([program("ANALYZE"), "info", bare], capture_output=True, check=True).stdout)
-            self.assertAlmostEqual(dem_state.relative_density(state), said["relative_density"], delta=1e-12)
+            self.assertAlmostEqual(kiln.relative_density(state), said["relative_density"], delta=1e-12)
 
     def test_built_in_materials(self):
         for name, material in convert_materials.BUILT_IN.items():

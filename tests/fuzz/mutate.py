@@ -14,7 +14,7 @@ import numpy
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
-from dem_state import groups, read  # noqa: E402  (the path comes first)
+import kiln  # noqa: E402  (the path comes first)
 from mutants import mutant  # noqa: E402
 
 LONGEST = 20.0  # s of a run; the longest here takes a tenth of a second where the machine is idle
@@ -91,8 +91,8 @@ def check_output(command, output):
         document = json.loads(line, parse_constant=refuse_constant)
         if document.get("format", "dem-state") not in ("dem-state", "dem-info"):  # these repeat what the input says
             check_values(document)
-    for document in read(io.BytesIO(output)):
-        for group, arrays in groups(document).items():
+    for document in kiln.documents(io.BytesIO(output)):
+        for group, arrays in kiln.groups(document).items():
             for name in FINITE[group]:
                 if isinstance(arrays.get(name), numpy.ndarray) and not numpy.isfinite(arrays[name]).all():
                     raise ValueError(f"{group}.{name} is not finite")
@@ -140,7 +140,7 @@ def main():
         start = time.monotonic()
         try:
             ends[check(command, given)] += 1
-        except ValueError as error:
+        except (ValueError, kiln.Error) as error:
             faults += 1
             path = os.path.join(options.keep, f"mutant-{seed}")
             with open(path, "wb") as file:

@@ -3,7 +3,7 @@ import copy
 
 import numpy
 
-from trial import dem_state
+from trial import kiln
 
 VECTORS = {"position", "displacement", "rotation", "force", "moment"}  # arrays of three components
 
@@ -82,7 +82,7 @@ def turned(document, axes, signs):
     axes, signs = list(axes), numpy.array(signs)
     edges, start = lengths(document)[axes], origin(document)[axes]
     changed = with_box(document, edges, numpy.where(signs > 0, start, -(start + edges)), periodic(document)[axes])
-    for arrays in dem_state.groups(changed).values():
+    for arrays in kiln.groups(changed).values():
         for name in VECTORS & arrays.keys():
             arrays[name] = numpy.ascontiguousarray(arrays[name][:, axes] * signs)
     if "bonds" in document:
@@ -118,7 +118,7 @@ def scaled(document, factor):
     """All lengths times a factor, about the origin of coordinates."""
     changed = with_box(document, lengths(document) * factor, origin(document) * factor, periodic(document))
     powers = {"position": 1, "radius": 1, "length": 1, "volume": 3}
-    for arrays in dem_state.groups(changed).values():
+    for arrays in kiln.groups(changed).values():
         for name in powers.keys() & arrays.keys():
             arrays[name] = arrays[name] * factor ** powers[name]
     return changed

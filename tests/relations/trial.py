@@ -11,7 +11,7 @@ import numpy
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
-import dem_state  # noqa: E402  (the path comes first)
+import kiln  # noqa: E402  (the path comes first)
 
 LONGEST = 120.0  # s of a run; those here take a second at most where the machine is idle
 
@@ -40,12 +40,12 @@ class Trial:
         """Writes documents to a file of the trial's folder; its name, which programs run in that folder understand."""
         with open(self.path(name), "wb") as file:
             for document in documents:
-                dem_state.write(file, document, text)
+                kiln.write(file, document, text)
         return name
 
     def get(self, name):
         """The documents of a file in the folder."""
-        return dem_state.read_file(self.path(name))
+        return kiln.read(self.path(name))
 
     def bytes_of(self, name):
         with open(self.path(name), "rb") as file:
@@ -67,7 +67,7 @@ class Trial:
 
     def states(self, name, *arguments, **options):
         """The documents that a program writes to standard output."""
-        return list(dem_state.read(io.BytesIO(self.run(name, *arguments, **options))))
+        return list(kiln.documents(io.BytesIO(self.run(name, *arguments, **options))))
 
     def results(self, name, *arguments, **options):
         """The JSON documents that a program writes, one a line."""

@@ -7,10 +7,11 @@ import re
 import sys
 import zlib
 
+import kiln
 import numpy
+from kiln.stream import written  # noqa: F401  (the converters have it from here)
 
 import units
-from dem_state import cylinder_volume
 
 SMALL, LARGE = ("id", "position", "radius", "material"), ("pair", "image", "radius", "length", "volume")
 # float() knows also 1_0, nan and digits of other scripts.
@@ -20,7 +21,7 @@ PACKED = {b"PK\x03\x04": "a zip archive", b"BZh": "packed by bzip2", b"\xfd7zXZ"
           b"\x28\xb5\x2f\xfd": "packed by zstd"}
 
 
-class ConvertError(Exception):
+class ConvertError(kiln.Error):
     """One sentence for the user: file, place, cause."""
 
 
@@ -65,22 +66,6 @@ warn = Voice()
 
 
 # ---- files ---------------------------------------------------------------------------------------------------------------------
-@contextlib.contextmanager
-def written(path, mode="w"):
-    """An open file that appears under its name only when it is whole; "-" is standard output."""
-    if path == "-":
-        yield sys.stdout if mode == "w" else sys.stdout.buffer
-        return
-    partial = f"{path}.partial-{os.getpid()}"
-    try:
-        with open(partial, mode, **({} if "b" in mode else {"encoding": "utf-8", "newline": "\n"})) as stream:
-            yield stream
-        os.replace(partial, path)
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(partial)
-
-
 @contextlib.contextmanager
 def opened(path):
     """An open binary file to read, unpacked if gzip packed it; "-" is standard input."""
@@ -231,18 +216,8 @@ def words_for(names, what):
 
 # ---- arrays of many columns ----------------------------------------------------------------------------------------------------
 def split_columns(group, known):
-    """The other arrays of a group as columns of single numbers: name, or name[0], name[1]…, and their values."""
-    columns = {}
-    for name, values in group.items():
-        if name in known:
-            continue
-        values = numpy.asarray(values)
-        flat = values.reshape(len(values), math.prod(values.shape[1:]))
-        if flat.shape[1] == 1:
-            columns[name] = flat[:, 0]
-        else:
-            columns.update({f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
-    return columns
+    """The other arrays of a group as columns of single numbers."""
+    return kiln.columns({name: values for name, values in group.items() if name not in known})
 
 
 def joined_columns(columns):
@@ -302,7 +277,7 @@ def bond_arrays(document):
         return None
     bonds = dict(document["bonds"])
     bonds.setdefault("image", numpy.zeros((len(bonds["radius"]), 3), numpy.int8))
-    bonds.setdefault("volume", cylinder_volume(bonds["radius"], bonds["length"]))
+    bonds.setdefault("volume", kiln.cylinder_volume(bonds["radius"], bonds["length"]))
     return bonds
 
 

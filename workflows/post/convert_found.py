@@ -6,8 +6,8 @@ import numpy
 
 import convert_materials
 import units
+import kiln
 from convert_common import (ConvertError, clipped, free_box, nearest_image, neck_length, periodic_axes, rows_of, warn)
-from dem_state import cylinder_volume
 from convert_check import check, check_box, check_materials
 
 
@@ -106,7 +106,7 @@ def lent(found, like, document):
     for row, (i, j) in enumerate(ids[other["pair"]].tolist()):
         lenders.setdefault((min(i, j), max(i, j)), []).append((row, i > j))
     images = other.get("image", numpy.zeros((len(other["radius"]), 3), numpy.int8)).astype(numpy.int64)
-    volume = other.get("volume", cylinder_volume(other["radius"], other["length"]))
+    volume = other.get("volume", kiln.cylinder_volume(other["radius"], other["length"]))
     wanted, seen = bonds["ids"].tolist(), {}
     often = {}
     for i, j in wanted:
@@ -158,7 +158,7 @@ def with_bonds(found, document, like, given):
         bonds["length"] = numpy.where(missing, neck_length(document, bonds["pair"], bonds["image"], bonds["radius"]),
                                       bonds["length"])
     missing = numpy.isnan(bonds["volume"])
-    bonds["volume"] = numpy.where(missing, cylinder_volume(bonds["radius"], bonds["length"]), bonds["volume"])
+    bonds["volume"] = numpy.where(missing, kiln.cylinder_volume(bonds["radius"], bonds["length"]), bonds["volume"])
     if missing.all():
         del bonds["volume"]  # by default that of the cylinder
     arrays = {name: values for name, values in bonds.items() if name not in ("ids", "told", "file", "image")}

@@ -10,11 +10,12 @@ import convert_materials
 import convert_musen
 import convert_vtu
 import convert_xyz
-import dem_state
+import kiln
 import units
 from convert_check import check
 from convert_common import ConvertError, clipped, ended, opened, unpacked, warn, written
 from convert_found import completed
+from kiln.stream import documents_in
 
 EXAMPLES = """formats, by the end of the name or --from and --to:
   dem    .kiln .dem; text with .jsonl  states, everything
@@ -60,12 +61,12 @@ def quantity(dimension):
 def documents_of(path):
     """The documents of a stream of states."""
     with opened(path) as stream:
-        number, documents = 0, dem_state.read(stream)
+        number, documents = 0, documents_in(stream)
         while True:
             number += 1
             try:
                 document = next(documents, None)
-            except ValueError as error:
+            except kiln.Error as error:
                 raise ConvertError(f"{path}, document {number}: {error}") from None
             if document is None:
                 return
@@ -90,8 +91,8 @@ def write_dem(path, documents, given):
     with written(path, "wb") as stream:
         for document in documents:
             try:
-                dem_state.write(stream, document, text)
-            except ValueError:
+                kiln.write(stream, document, text)
+            except kiln.Error:
                 raise ConvertError("an array holds what is not a finite number, which text cannot; write it as .kiln") from None
 
 
@@ -208,7 +209,8 @@ def states(path, reader, given):
 
 def with_history(documents, given):
     for document in documents:
-        document["history"] = [*document.get("history", []), {"tool": "dem-convert", "version": "0.1.0", "arguments": given.shown}]
+        step = {"tool": "dem-convert", "version": kiln.__version__, "arguments": given.shown}
+        document["history"] = [*document.get("history", []), step]
         yield document
 
 
@@ -255,7 +257,7 @@ def parser():
                        metavar="[LABEL=]NAME,...",
                        help="materials of the particles that the file calls LABEL, or of its types in their order: alumina, or "
                        "Al=alumina,Zr=zirconia.json")
-    parse.add_argument("--version", action="version", version="dem-convert (Kiln) 0.1.0")
+    parse.add_argument("--version", action="version", version=f"dem-convert (Kiln) {kiln.__version__}")
     return parse
 
 

@@ -14,7 +14,7 @@ import zlib
 
 import numpy
 
-import dem_state
+import kiln
 from convert_common import ConvertError, bounds, ended, particle_arrays, periodic_axes, written
 from dem_convert import documents_of
 
@@ -307,7 +307,7 @@ class Scene:
         self.groups["bonds"].append({name: small(values) for name, values in body.bonds.items()})
         self.states.append({
             "time": float(document.get("time", 0.0)),
-            "density": float(dem_state.relative_density(document)) if body.periodic.all() else None,
+            "density": kiln.relative_density(document) if body.periodic.all() else None,
             "enlarged": float(body.enlarged),
             "low": low - middle,
             "high": high - middle,
@@ -454,7 +454,7 @@ def parser():
                        default=THREE,
                        metavar="FOLDER",
                        help="where three.js is (default: %(default)s)")
-    parse.add_argument("--version", action="version", version="dem-view (Kiln) 0.1.0")
+    parse.add_argument("--version", action="version", version=f"dem-view (Kiln) {kiln.__version__}")
     return parse
 
 

@@ -6,9 +6,8 @@ import argparse
 import csv
 import json
 import pathlib
-import subprocess
 
-from dem_state import read_file
+import kiln
 
 CONFIDENCE = 0.95
 NUMBERS = (  # heading, unit, factor, file, and how the number is read from it
@@ -25,8 +24,7 @@ NUMBERS = (  # heading, unit, factor, file, and how the number is read from it
 
 def means(analyze, documents):
     """What `analyze mean` says of documents that have the same numbers."""
-    lines = "".join(json.dumps({"format": "dem-ensemble", "version": 1, **each}) + "\n" for each in documents)
-    return json.loads(subprocess.run([analyze, "mean"], input=lines, capture_output=True, check=True, text=True).stdout)
+    return kiln.run([analyze, "mean"], given=[{"format": "dem-ensemble", "version": 1, **each} for each in documents])[0]
 
 
 def entry(case, name, unit, said):
@@ -47,12 +45,12 @@ def entry(case, name, unit, said):
 def entries(run, packings, temperatures, analyze):
     table = []
     for temperature in temperatures:
-        results = [{kind: read_file(run / packing / temperature / f"{kind}.json")[0] for kind in ("density", "bonds", "modulus")}
+        results = [{kind: kiln.read(run / packing / temperature / f"{kind}.json")[0] for kind in ("density", "bonds", "modulus")}
                    for packing in packings]
         said = means(analyze,
                      [{name: factor * number(each[kind]) for name, _, factor, kind, number in NUMBERS} for each in results])
         table.extend(entry(temperature, name, unit, said) for name, unit, *_ in NUMBERS)
-    fits = [read_file(run / packing / "fit.json")[0] for packing in packings]
+    fits = [kiln.read(run / packing / "fit.json")[0] for packing in packings]
     names = {name: (1e-9, "GPa") if name == "E0" else (1.0, "") for name in fits[0]["standard_errors"]}
     said = means(analyze, [{name: factor * fit[name] for name, (factor, _) in names.items()} for fit in fits])
     table.extend(entry(f"fit, {fits[0]['law']}", name, unit, said) for name, (_, unit) in names.items())

@@ -4,7 +4,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle
 
 import style
-from dem_state import read_file
+import kiln
 from dem_view import bent_positions
 from style import NM, pyplot
 
@@ -59,8 +59,8 @@ def draw(state, test):
 
 def main():
     given = style.arguments(__doc__, ("test", "result of bend"), ("states", "bent bar of the same test"))
-    state = read_file(given.states[0])[0]
-    style.save(draw(state, read_file(given.test)[0]), given.output)
+    state = kiln.read(given.states[0])[0]
+    style.save(draw(state, kiln.read(given.test)[0]), given.output)
 
 
 if __name__ == "__main__":

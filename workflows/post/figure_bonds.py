@@ -2,7 +2,7 @@
 import numpy
 
 import style
-from dem_state import read_file, relative_density
+import kiln
 from style import NM, pyplot
 
 BIN = 1.0  # nm
@@ -27,8 +27,8 @@ def draw(cases):
 
 def main():
     given = style.arguments(__doc__, ("states", "files with bonded states"))
-    states = [state for path in given.states for state in read_file(path)]
-    style.save(draw([(relative_density(state), state["bonds"]["radius"]) for state in states]), given.output)
+    states = [state for path in given.states for state in kiln.read(path)]
+    style.save(draw([(kiln.relative_density(state), state["bonds"]["radius"]) for state in states]), given.output)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,6 @@
 """figure_density.py: relative density against sintering time, picked states marked (Fig. 2 of Dosta et al. 2017)."""
-import json
-
 import style
-from dem_state import read_file, relative_density
+import kiln
 from style import pyplot
 from units import ZERO_CELSIUS
 
@@ -26,9 +24,8 @@ def draw(steps, picks):
 
 def main():
     given = style.arguments(__doc__, ("history", "history of sinter, JSON lines"), ("states", "files with the picked states"))
-    with open(given.history, encoding="utf-8") as lines:
-        steps = [json.loads(line) for line in lines]
-    picks = [(state["time"], relative_density(state)) for path in given.states for state in read_file(path)]
+    steps = kiln.read(given.history)
+    picks = [(state["time"], kiln.relative_density(state)) for path in given.states for state in kiln.read(path)]
     style.save(draw(steps, picks), given.output)
 
 

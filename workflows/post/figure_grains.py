@@ -1,16 +1,14 @@
 """figure_grains.py: grain size against relative density of firings with coarsening, with what each mechanism has moved."""
-import json
 import os
 
+import kiln
 import style
 from style import pyplot
 
 
 def read(path):
     """The lines of a history that have grain sizes."""
-    with open(path, encoding="utf-8") as lines:
-        steps = [json.loads(line) for line in lines]
-    steps = [step for step in steps if "mean_grain_diameter" in step]
+    steps = [step for step in kiln.read(path) if "mean_grain_diameter" in step]
     if not steps:
         raise SystemExit(f"figure_grains.py: {path}: no line has mean_grain_diameter; sinter writes it with --coarsening")
     return steps

@@ -2,7 +2,7 @@
 import numpy
 
 import style
-from dem_state import read_file
+import kiln
 from style import pyplot
 
 ZERO_CELSIUS = 273.15  # K
@@ -61,7 +61,7 @@ def draw(result):
 
 def main():
     given = style.arguments(__doc__, ("result", "JSON of analyze kinetics"))
-    style.save(draw(read_file(given.result)[0]), given.output)
+    style.save(draw(kiln.read(given.result)[0]), given.output)
 
 
 if __name__ == "__main__":

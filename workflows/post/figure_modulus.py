@@ -2,7 +2,7 @@
 import numpy
 
 import style
-from dem_state import read_file
+import kiln
 from style import GPA, pyplot
 
 DASHES = ((0, (5, 3)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
@@ -83,7 +83,7 @@ def draw(fits):
 
 def main():
     given = style.arguments(__doc__, ("fits", "results of analyze fit: one, or those of necks and of bonds of Eq. 2-4"))
-    style.save(draw([read_file(path)[0] for path in given.fits]), given.output)
+    style.save(draw([kiln.read(path)[0] for path in given.fits]), given.output)
 
 
 if __name__ == "__main__":

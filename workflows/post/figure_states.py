@@ -2,7 +2,7 @@
 import numpy
 
 import style
-from dem_state import read_file, relative_density
+import kiln
 from style import NM, pyplot
 
 PIXELS = 900  # along the longer side of a picture
@@ -76,8 +76,8 @@ def draw(states):
         axis.imshow(shade, origin="lower", extent=limits, interpolation="antialiased")
         axis.set_xlim(-widest, widest)
         axis.set_axis_off()
-        axis.set_title(f"{word}: relative density {relative_density(state):.2f}, {len(state['particles']['radius']):,} particles",
-                       loc="left")
+        density, count = kiln.relative_density(state), len(state["particles"]["radius"])
+        axis.set_title(f"{word}: relative density {density:.2f}, {count:,} particles", loc="left")
     bar = 10**numpy.floor(numpy.log10(widest))
     axes[1].plot([-widest, bar - widest], [limits[2]] * 2, color="black", linewidth=2.0, clip_on=False)
     axes[1].annotate(f"{bar:,.0f} nm", (bar / 2 - widest, limits[2]), (0, 3), textcoords="offset points", ha="center")
@@ -86,7 +86,7 @@ def draw(states):
 
 def main():
     given = style.arguments(__doc__, ("states", "files with states; the first and the last of all are drawn"))
-    style.save(draw([state for path in given.states for state in read_file(path)]), given.output)
+    style.save(draw([state for path in given.states for state in kiln.read(path)]), given.output)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import re
 
 import numpy
 
-from dem_state import read_file
+import kiln
 from convert_common import ConvertError, warn
 from schedules import ScheduleError, corners
 from tables import Table
@@ -32,8 +32,7 @@ def theta_along(time, kelvin, energy):
 
 def master_curve(run, case, schedule, energy):
     """Densities and theta of the steps of a firing that densified the packing."""
-    with open(run / case / "history.jsonl", encoding="utf-8") as lines:
-        steps = [json.loads(line) for line in lines]
+    steps = kiln.read(run / case / "history.jsonl")
     fine, theta = theta_along(*corners(schedule), energy)
     density = numpy.array([step["relative_density"] for step in steps])
     reached = numpy.interp([step["time"] for step in steps], fine, theta)
@@ -54,12 +53,12 @@ def compare(run, schedules, measured):
     """The firings, and the density of the model against the temperature of the firing."""
     peak = {case: corners(schedule)[1].max() for case, schedule in schedules.items()}
     hottest = max(peak, key=peak.get)
-    material = read_file(run / hottest / "fired.kiln")[0]["materials"][0]
+    material = kiln.read(run / hottest / "fired.kiln")[0]["materials"][0]
     energy = material["grain_boundary_diffusion"]["activation_energy"]
     density, theta = master_curve(run, hottest, schedules[hottest], energy)
     firings = []
     for case, schedule in sorted(schedules.items(), key=lambda item: peak[item[0]]):
-        state = read_file(run / case / "density.json")[0]
+        state = kiln.read(run / case / "density.json")[0]
         entry = {
             "firing": case,
             "schedule": schedule,

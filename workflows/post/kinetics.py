@@ -1,7 +1,7 @@
 """kinetics.py: what workflows/kinetics found, as text: energies without a model, constants and deviations with one, and bands."""
 import argparse
 
-from dem_state import read_file
+import kiln
 
 KILO = 1e3
 
@@ -90,7 +90,7 @@ def main():
     text = []
     for place, entry in enumerate(given.results):
         title, prefix, path = entry.split("=")
-        result = read_file(path)[0]
+        result = kiln.read(path)[0]
         for body in result["bodies"]:
             body["label"] = label(body, prefix)
         if place == 0:

@@ -9,8 +9,8 @@ import sys
 
 import dem_view
 import style
+import kiln
 from convert_common import ConvertError
-from dem_state import read_file
 from figure_modulus import SHAPE
 from style import GPA
 
@@ -100,7 +100,7 @@ def density_plot(run, densities):
         x, y = [step["time"] for step in chosen], [step["relative_density"] for step in chosen]
         return {"x": x, "y": y, "text": text, **more}
 
-    steps = [json.loads(line) for line in (run / "history.jsonl").read_text(encoding="utf-8").splitlines()]
+    steps = kiln.read(run / "history.jsonl")
     picks = [min(steps, key=lambda step: abs(step["relative_density"] - density)) for density in densities]
     return {
         "picture": "density",
@@ -227,9 +227,9 @@ def files(run):
 
 def page(run, kind, bent):
     cases = sorted(path.parent for path in run.glob("*/modulus.json"))
-    tests, necks = ([read_file(case / name)[0] for case in cases] for name in ("modulus.json", "necks_modulus.json"))
-    bonds = [read_file(case / "bonds.json")[0] for case in cases]
-    fit, necks_fit = (read_file(run / name)[0] for name in ("fit.json", "necks_fit.json"))
+    tests, necks = ([kiln.read(case / name)[0] for case in cases] for name in ("modulus.json", "necks_modulus.json"))
+    bonds = [kiln.read(case / "bonds.json")[0] for case in cases]
+    fit, necks_fit = (kiln.read(run / name)[0] for name in ("fit.json", "necks_fit.json"))
     entries = json.loads((run / "table2.json").read_text(encoding="utf-8"))
     commands, steps = provenance([test.get("history", []) for test in tests + necks])
     seed = next((step["seed"] for step in steps if "seed" in step), "–")

@@ -4,7 +4,7 @@ import csv
 import json
 import pathlib
 
-from dem_state import read_file
+import kiln
 
 PARTICLES = 99_000  # of the paper; counts are scaled to as many
 DENSITIES = (0.67, 0.71, 0.79, 0.88)
@@ -52,7 +52,7 @@ def main():
     parser.add_argument("results", nargs=len(DENSITIES), help="results of analyze bonds, in the order of the densities")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, help="table to write; also as .csv and .json")
     given = parser.parse_args()
-    results = [read_file(path)[0] for path in given.results]
+    results = [kiln.read(path)[0] for path in given.results]
     table = entries(results)
     text = as_text(table, results[0]["particles"])
     given.output.with_suffix(".json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")

@@ -1,17 +1,12 @@
 """validate.py: tables of what laws and networks say against the voxel model of the same states; see workflows/validate."""
 import argparse
-import json
 import os
 import statistics
 
+import kiln
 from style import GPA
 
 MODULI = ("axial_modulus", "young_modulus")
-
-
-def documents(path):
-    with open(path, encoding="utf-8") as lines:
-        return [json.loads(line) for line in lines]
 
 
 def root_mean_square(values):
@@ -20,7 +15,7 @@ def root_mean_square(values):
 
 def compared(folder, model="solid"):
     """The voxel document and the network's of each state of a packing."""
-    voxel, network = (documents(os.path.join(folder, f"{name}.json")) for name in ("voxel", model))
+    voxel, network = (kiln.read(os.path.join(folder, f"{name}.json")) for name in ("voxel", model))
     return list(zip(voxel, network, strict=True))
 
 
@@ -52,7 +47,7 @@ def flow_table(folders):
     yield f"{'packing':<12} {'density':>7} {'voxels W/m/K':>18} {'network':>8} {'':>8} {'bound':>7}"
     off = []
     for folder in folders:
-        pairs = zip(documents(os.path.join(folder, "voxel-flow.json")), documents(os.path.join(folder, "network-flow.json")),
+        pairs = zip(kiln.read(os.path.join(folder, "voxel-flow.json")), kiln.read(os.path.join(folder, "network-flow.json")),
                     strict=True)
         for voxel, network in pairs:
             off.append(network["conductivity"] / voxel["conductivity"] - 1)
@@ -64,7 +59,7 @@ def flow_table(folders):
 
 def row_table(paths):
     """Means over packings at each density, necks as the sintering law has them."""
-    packings = [documents(path) for path in paths]
+    packings = [kiln.read(path) for path in paths]
     yield f"{'density':>7} {'union':>6} {'E GPa':>7} {'standard error':>15} {'axial':>7} {'nu':>6}   {len(packings)} packings"
     for states in zip(*packings, strict=True):
         young = [state["young_modulus"] / GPA for state in states]
@@ -76,7 +71,7 @@ def row_table(paths):
 
 
 def twice_table(paths):
-    coarse, fine = (documents(path) for path in paths)
+    coarse, fine = (kiln.read(path) for path in paths)
     yield f"{'density':>7} {'E GPa':>14} {'twice as fine':>15} {'off':>6} {'of stated':>10}   {'nu':>14} {'twice as fine':>14}"
     for one, two in zip(coarse, fine, strict=True):
         off = one["young_modulus"] - two["young_modulus"]

@@ -3,7 +3,7 @@ import argparse
 import json
 import sys
 
-import dem_state
+import kiln
 
 
 def main():
@@ -14,14 +14,12 @@ def main():
     given = parser.parse_args()
     with open(given.material, encoding="utf-8") as stream:
         material = json.load(stream)
-    states = dem_state.read_file(given.state)
+    states = kiln.read(given.state)
     for state in states:
         if len(state.get("materials", [])) > 1:
             sys.exit(f"with_material.py: {given.state}: has several materials")
         state["materials"] = [material]
-    with open(given.output, "wb") as stream:
-        for state in states:
-            dem_state.write(stream, state)
+    kiln.write(given.output, states)
 
 
 if __name__ == "__main__":
