@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "analysis/slenderness.h"
 #include "physics/bending.h"
 #include "physics/hertz.h"
 #include "physics/materials.h"
@@ -117,6 +118,7 @@ Fixture place_fixture(const Specimen& specimen, const Options& options) {
         words << "the span of " << fixture.span << " m is not shorter than the bar of " << length << " m";
         throw Error(words.str());
     }
+    if (!options.allow_block) analysis::refuse_block(fixture.span, specimen.size[2], "--allow-block");
     const auto [low, high] = reach(specimen, specimen.body.particle);
     if (!reaches_supports(specimen, fixture, specimen.body.particle)) {
         const double left = fixture.middle - fixture.span / 2.0, right = fixture.middle + fixture.span / 2.0;

@@ -29,6 +29,7 @@ struct Options {
     double damping = 0.7;
     double friction = 0.0;
     double mass_scaling = 1.0;
+    bool allow_block = false;  // bars whose span is below twice their height
     double tensile_strength = 0.0;  // Pa, of bonds; zero: they do not break so
     double shear_strength = 0.0;    // Pa
     double until = 0.1;             // of the greatest force: where a test to failure ends

@@ -7,7 +7,9 @@
 #include <optional>
 #include <sstream>
 
+#include "analysis/slenderness.h"
 #include "bending/seating.h"
+#include "physics/bending.h"
 
 namespace kiln::bending {
 
@@ -59,6 +61,10 @@ double mean_turn(const mechanics::BondNetwork& network, const linalg::Vector& di
 
 void add_warnings(Result& result, const Options& options) {
     std::vector<std::string>& warnings = result.warnings;
+    const Specimen& specimen = result.specimen;
+    const double span = result.fixture.span, height = specimen.size[2];
+    const double correction = physics::shear_correction(height, span, specimen.poisson_ratio);
+    if (const auto sentence = analysis::short_bar_warning(span, height, correction)) warnings.push_back(*sentence);
     const double roll = result.specimen.turn.norm();
     if (roll > large_roll) {
         warnings.push_back("the bar rolls by " + digits(roll) +

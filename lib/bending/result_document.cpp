@@ -70,6 +70,7 @@ Json document(const Result& result, const Options& options, const Json& history)
               {"width", specimen.size[1]},
               {"height", specimen.size[2]},
               {"length", specimen.size[0]},
+              {"slenderness", result.fixture.span / specimen.size[2]},
               {"punch_radius", result.fixture.radius},
               {"bond_law", physics::name_of(*specimen.body.model.law)},
               {"bond_shear", specimen.body.model.shear ? Json(physics::name_of(*specimen.body.model.shear)) : Json()},
@@ -100,6 +101,7 @@ Json document(const Result& result, const Options& options, const Json& history)
         json["residual"] = result.residual;
     }
     json.update(summary(result));
+    json["warnings"] = result.warnings;
     json["history"] = history;
     return json;
 }

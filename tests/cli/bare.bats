@@ -20,7 +20,7 @@ setup() {
 
 # bar: bar.jsonl, bonded particles that name no material.
 bar() {
-    "$SINTER" green -n 150 --aspect 4:1:1 --compact-to 0.6 --seed 3 --text | jq -c 'del(.materials)' | "$BONDIFY" -q --text |
+    "$SINTER" green -n 300 --aspect 6:1:1 --compact-to 0.6 --seed 3 --text | jq -c 'del(.materials)' | "$BONDIFY" -q --text |
         jq -c 'del(.materials)' >bar.jsonl
 }
 

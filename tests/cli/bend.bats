@@ -230,3 +230,35 @@ PROGRAM
     assert_regex "$stderr" "lies on one support only"
     jq -e '.effective_span == .span and (.curve.force | length) == 13' <<<"$output"
 }
+
+@test "short bars: a warning below L/h 4 that stays in every result, a refusal below 2 unless it is asked for" {
+    cd "$BATS_TEST_TMPDIR"
+    for aspect in 1 4 6; do
+        "$SINTER" green -q -n 200 --density 0.43 --method affine --compact-to 0.7 --aspect $aspect:1:1 --seed 2 | "$BONDIFY" -q -o $aspect.kiln
+    done
+    run -1 --separate-stderr "$BEND" --cycles 1 1.kiln
+    assert_output ""
+    assert_regex "$stderr" "^bend: 1.kiln, document 1: L/h .span over height. is 0.8: below 2 it is a block.*--aspect 6:1:1.*--allow-block$"
+    run -0 --separate-stderr "$BEND" --cycles 1 --allow-block 1.kiln
+    echo "$output" >block.json
+    run -0 --separate-stderr "$ANALYZE" modulus block.json # it was asked for
+    assert_equal "$stderr" ""
+    jq -e '(.warnings[0] | startswith("L/h (span over height) is 0.8, below 4")) and (.slenderness * 10 | round == 8)' <<<"$output"
+    run -0 --separate-stderr "$BEND" --cycles 1 4.kiln
+    assert_regex "$stderr" "warning: 4.kiln, document 1: L/h .* is 3.2, below 4: shear is 22 %.*factor 1.29"
+    jq -e '(.warnings | length) == 1 and (.slenderness * 10 | round == 32)' <<<"$output"
+    echo "$output" >short.json
+    run -0 --separate-stderr "$ANALYZE" modulus short.json # said once
+    assert_equal "$stderr" ""
+    jq -e '.warnings | length == 1' <<<"$output"
+    run -0 --separate-stderr "$ANALYZE" modulus --table short.json
+    assert_regex "$output" " L/h .*[^0-9]3[.][12]"
+    run -1 --separate-stderr "$ANALYZE" modulus --height 2um short.json
+    assert_regex "$stderr" "short.json, document 1: L/h .*below 2"
+    run -0 --separate-stderr "$BEND" --cycles 1 6.kiln
+    assert_equal "$stderr" ""
+    jq -e '.warnings == [] and .slenderness > 4.5' <<<"$output"
+    # Strengths come from a beam formula too.
+    run -0 --separate-stderr bash -c '"$0" -q --tensile-strength 500MPa 4.kiln | "$1" strength -q' "$BEND" "$ANALYZE"
+    jq -e '.warnings[0] | contains("below 4")' <<<"$output"
+}

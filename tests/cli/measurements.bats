@@ -324,3 +324,24 @@ measured() { # moduli of Knudsen's law, with errors of 1 %
     run -1 "$ANALYZE" fit dense.csv
     assert_output --partial "dense.csv, line 3: the porosity is -0.1999"
 }
+
+@test "analyze modulus and strength: short bars of a laboratory are warned of, and blocks refused" {
+    unloading >bar.csv
+    run -0 --separate-stderr "$ANALYZE" modulus --span 10mm --width 4mm --height 3mm bar.csv
+    assert_regex "$stderr" "warning: bar.csv: L/h .span over height. is 3.3, below 4: shear is 21 %"
+    jq -e '(.warnings | length) == 1' <<<"$output"
+    run -0 --separate-stderr "$ANALYZE" modulus --shear none --span 10mm --width 4mm --height 3mm bar.csv
+    assert_regex "$stderr" "E has no factor"
+    run -1 --separate-stderr "$ANALYZE" modulus --span 5mm --width 4mm --height 3mm bar.csv
+    assert_regex "$stderr" "bar.csv: L/h .span over height. is 1.7: below 2 it is a block"
+    run -0 --separate-stderr "$ANALYZE" modulus -q --allow-block --span 5mm --width 4mm --height 3mm bar.csv
+    assert_equal "$stderr" ""
+    run -0 --separate-stderr "$ANALYZE" modulus "${SIZE[@]}" bar.csv
+    assert_equal "$stderr" ""
+    jq -e '.warnings == [] and (.slenderness - 10 | fabs < 1e-9)' <<<"$output"
+    printf 'force (N),width (mm),height (mm)\n90,4,3\n104,4,12\n' >bars.csv
+    run -0 --separate-stderr "$ANALYZE" strength -q --span 40mm bars.csv
+    jq -e '.warnings | length == 1 and (.[0] | contains("the strength lies above"))' <<<"$output"
+    run -1 --separate-stderr "$ANALYZE" strength --span 20mm bars.csv
+    assert_regex "$stderr" "below 2 it is a block"
+}

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "analysis/slenderness.h"
+#include "core/types.h"
 #include "physics/bending.h"
 #include "tests/physics/relative.h"
 
@@ -31,4 +33,21 @@ TEST_CASE("shear counts for 2.4 (1 + nu) (h/L)2, next to nothing in a slender ba
 
 TEST_CASE("bending modulus of geometrically similar bars: slopes grow with length") {
     CHECK(bending_modulus(2.0, 8.0, 2.0, 1.0, 0.2) == relative(bending_modulus(2e-6, 8e-6, 2e-6, 1e-6, 0.2), 1e-13));
+}
+
+TEST_CASE("short bars: a sentence below L/h = 4 with what shear does to E, and a refusal below 2") {
+    using namespace kiln::analysis;
+    CHECK_FALSE(short_bar_warning(4.0, 1.0, shear_correction(1.0, 4.0, 0.23)));
+    const auto sentence = short_bar_warning(3.2, 1.0, shear_correction(1.0, 3.2, 0.23));
+    REQUIRE(sentence);
+    CHECK(is_short_bar_warning(*sentence));
+    CHECK(sentence->starts_with("L/h (span over height) is 3.2, below 4: shear is 22 % of a beam's deflection"));  // 1 - 1/1.288
+    CHECK(sentence->find("factor 1.29") != std::string::npos);
+    CHECK(short_bar_warning(3.2, 1.0, 1.0)->find("no factor") != std::string::npos);
+    CHECK(short_bar_warning(3.2, 1.0, std::nullopt)->find("strength lies above") != std::string::npos);
+    CHECK_NOTHROW(refuse_block(2.0, 1.0, "--allow-block"));
+    CHECK_THROWS_WITH_AS(refuse_block(0.8e-6, 1e-6, "--allow-block"),
+                         "L/h (span over height) is 0.8: below 2 it is a block, of which the formulas of beams give up to several "
+                         "times the modulus; bend a bar (sinter green --aspect 6:1:1), or give --allow-block",
+                         kiln::Error);
 }

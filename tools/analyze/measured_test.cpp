@@ -5,6 +5,7 @@
 #include <span>
 
 #include "analysis/line_fit.h"
+#include "analysis/slenderness.h"
 #include "core/types.h"
 #include "io/files.h"
 #include "tools/analyze/results.h"
@@ -68,6 +69,9 @@ void BarOptions::add_to(CLI::App& app) {
     add_optional(app, "--span", span, io::Dimension::length, "Distance between the supports");
     add_optional(app, "--width", width, io::Dimension::length, "Width of the bar");
     add_optional(app, "--height", height, io::Dimension::length, "Height of the bar, along the load");
+    app.add_flag("--allow-block", allow_block,
+                 "Also take tests whose span L is below twice the height h, for which the formulas of beams do not hold. Below "
+                 "L/h = 4 there is a warning, which the result keeps");
 }
 
 double BarOptions::size(const io::Document& document, const std::string& key) const {
@@ -75,6 +79,23 @@ double BarOptions::size(const io::Document& document, const std::string& key) co
     if (given) return *given;
     if (is_measured(document) && !document.header.contains(key)) throw Error("--" + key + " is needed with a table");
     return positive_at(document, key);
+}
+
+void BarOptions::refuse_block(const io::Document& document) const {
+    const bool allowed_there = document.header.contains("slenderness") && !span && !height;
+    if (!allow_block && !allowed_there) analysis::refuse_block(size(document, "span"), size(document, "height"), "--allow-block");
+}
+
+std::vector<std::string> BarOptions::warnings(const io::Document& document) const {
+    std::vector<std::string> sentences = warnings_at(document);
+    if (span || height) std::erase_if(sentences, analysis::is_short_bar_warning);
+    return sentences;
+}
+
+std::optional<std::string> BarOptions::short_bar_warning(const io::Document& document,
+                                                         std::optional<double> shear_correction) const {
+    if (std::ranges::any_of(warnings(document), analysis::is_short_bar_warning)) return std::nullopt;
+    return analysis::short_bar_warning(size(document, "span"), size(document, "height"), shear_correction);
 }
 
 Curve curve_of(const io::Document& document) {

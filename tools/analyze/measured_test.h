@@ -28,11 +28,22 @@ void add_optional(CLI::App& app, const std::string& name, std::optional<double>&
 /// Sizes of the bar and its fixture, m.
 struct BarOptions {
     std::optional<double> span, width, height;
+    bool allow_block = false;
 
     void add_to(CLI::App& app);
 
     /// That of the key "span", "width" or "height": as given, else the document's. Throws Error where neither has it.
     [[nodiscard]] double size(const io::Document& document, const std::string& key) const;
+
+    /// Throws Error for a block, unless blocks are allowed, here or in its test.
+    void refuse_block(const io::Document& document) const;
+
+    /// The document's "warnings", but for one on its slenderness where that is another here.
+    [[nodiscard]] std::vector<std::string> warnings(const io::Document& document) const;
+
+    /// What to know of a beam on the span and height of the test, where its "warnings" do not say it.
+    [[nodiscard]] std::optional<std::string> short_bar_warning(const io::Document& document,
+                                                               std::optional<double> shear_correction) const;
 };
 
 /// Headings of forces, of deflections by a gauge at the bar, and of travels of the machine.

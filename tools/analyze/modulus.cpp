@@ -41,7 +41,9 @@ constexpr const char* modulus_footer =
     "  confidence_interval  95 %, Student's t; null for two points\n"
     "  r_squared            share of the forces' variation that the line explains\n"
     "  branch               unloading or loading\n"
+    "  slenderness          span over height, L/h\n"
     "  shear_correction     the bracket\n"
+    "  warnings             sentences, those of the test too; of bars with L/h below 4\n"
     "  bond_law, method     of the test\n"
     "  columns, turned      of a table: the headings that were read, and those whose signs were turned\n"
     "The error says how straight the curve is, not how much packings or specimens differ.\n\n"
@@ -52,8 +54,8 @@ constexpr const char* modulus_footer =
     "  analyze modulus --span 40mm --width 4mm --height 3mm --branch loading --plot bar7.svg bar7.csv";
 
 const std::vector<Column> modulus_columns{{"relative_density", "relative density", ""}, {"young_modulus", "Young's modulus", "Pa"},
-                                  {"standard_error", "standard error", "Pa"},   {"points", "points", ""},
-                                  {"branch", "branch", ""},                     {"bond_law", "bond law", ""},
+                                  {"standard_error", "standard error", "Pa"},   {"slenderness", "L/h", ""},
+                                  {"points", "points", ""},                     {"branch", "branch", ""},                     {"bond_law", "bond law", ""},
                                   {"method", "method", ""}};
 
 struct ModulusOptions {
@@ -182,12 +184,23 @@ double poisson_ratio_of(const io::Document& document, const ModulusOptions& opti
     return number_at(document, "poisson_ratio", -1.0);
 }
 
+/// The sentences of the test, and one on a short bar where it has none; that is said at once.
+Json warnings_of(const io::Document& document, const ModulusOptions& options, double correction, bool quiet) {
+    std::vector<std::string> list = options.bar.warnings(document);
+    if (const auto sentence = options.bar.short_bar_warning(document, correction)) {
+        list.push_back(*sentence);
+        if (!quiet) cli::warn("analyze modulus", document.place + ": " + *sentence);
+    }
+    return list;
+}
+
 /// The result of a test; the picture of it into `plot` if one is asked for.
-Json modulus_of(const io::Document& document, const ModulusOptions& options, std::string& plot) {
+Json modulus_of(const io::Document& document, const ModulusOptions& options, bool quiet, std::string& plot) {
     expect_format(document, {"dem-bend"}, "modulus");
     if (!is_measured(document)) options.columns.refuse_with_documents();
     const double span = options.bar.size(document, "span");
     const double width = options.bar.size(document, "width"), height = options.bar.size(document, "height");
+    options.bar.refuse_block(document);
     Json density = options.density ? Json(*options.density) : Json();
     if (!options.density && !is_measured(document)) density = positive_at(document, "relative_density");
     const Curve curve = curve_of(document);
@@ -208,12 +221,14 @@ Json modulus_of(const io::Document& document, const ModulusOptions& options, std
                 {"confidence_interval", interval},
                 {"slope", fit.line.slope},
                 {"relative_density", density},
+                {"slenderness", span / height},
                 {"shear_correction", correction},
                 {"compliance", options.compliance},
                 {"window", {options.window.upper, options.window.lower}},
                 {"points", fit.force.size()},
                 {"r_squared", fit.line.r_squared},
-                {"branch", options.branch()}};
+                {"branch", options.branch()},
+                {"warnings", warnings_of(document, options, correction, quiet)}};
     if (is_measured(document)) result["source"] = source;
     for (const char* key : {"bond_law", "method", "columns", "turned", "history"})
         if (document.header.contains(key)) result[key] = document.header[key];
@@ -233,7 +248,7 @@ int modulus(int argc, char** argv) {
     options.add_to(app);
     std::string plot;
     const auto convert = [&](const io::Document& document) {
-        Json result = modulus_of(document, options, plot);
+        Json result = modulus_of(document, options, app.get_option("--quiet")->as<bool>(), plot);
         if (result.contains("history")) result["history"].push_back(cli::history_entry("analyze modulus", app, Json::object()));
         return result;
     };

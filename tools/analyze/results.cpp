@@ -1,6 +1,7 @@
 // results.cpp: checks on the documents of test results.
 #include "tools/analyze/results.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "io/state_io.h"
@@ -47,6 +48,14 @@ std::vector<double> numbers_at(const io::Document& document, const std::string& 
         numbers.push_back(io::number_from(list[row], where + ", row " + std::to_string(row),
                                           std::numeric_limits<double>::lowest()));
     return numbers;
+}
+
+std::vector<std::string> warnings_at(const io::Document& document) {
+    const auto found = document.header.find("warnings");
+    if (found == document.header.end()) return {};
+    if (!found->is_array() || !std::ranges::all_of(*found, [](const Json& each) { return each.is_string(); }))
+        throw Error("warnings is " + io::shown(*found) + ", not a list of sentences");
+    return found->get<std::vector<std::string>>();
 }
 
 }  // namespace kiln::analyze

@@ -23,4 +23,7 @@ double positive_at(const io::Document& document, const std::string& key);
 /// The list of finite numbers at header[object][key]; throws Error naming the key.
 std::vector<double> numbers_at(const io::Document& document, const std::string& object, const std::string& key);
 
+/// The sentences of the document's "warnings", none where it has no such key. Throws Error where they are no list of sentences.
+std::vector<std::string> warnings_at(const io::Document& document);
+
 }  // namespace kiln::analyze

@@ -40,6 +40,7 @@ constexpr const char* strength_footer =
     "  unbiased_weibull_modulus  times unbiasing_factor: right on the average of many such samples\n"
     "  characteristic_strength   Pa; 63.2 % of all bars break below it\n"
     "  confidence_intervals      95 %, of both parameters\n"
+    "  warnings                  sentences, those of the tests too; of bars with L/h below 4\n"
     "Factor and intervals are those of ASTM C1239 (Thoman, Bain and Antle 1969), by the same way of drawing samples of so many "
     "bars; "
     "the factor is 0.955 for 30 bars in that table and 0.953 here.\n\n"
@@ -106,6 +107,7 @@ class Bars {
         found.header = document.header["strength"];
         if (positive_at(found, "breaks") < 1.0) throw Error("no bond of the bar broke");
         const double force = positive_at(found, "peak_force");
+        check_slenderness(document);
         add_bar(force, size(document, "span"), size(document, "width"), size(document, "height"), source_of(document.place));
         if (document.header.contains("relative_density")) bars_.back()["relative_density"] = document.header["relative_density"];
     }
@@ -127,6 +129,7 @@ class Bars {
 
     [[nodiscard]] const std::vector<Json>& bars() const { return bars_; }
     [[nodiscard]] const std::vector<double>& strengths() const { return strengths_; }
+    [[nodiscard]] const Json& warnings() const { return warnings_; }
 
    private:
     static std::string source_of(const std::string& place) { return std::filesystem::path(place).filename().string(); }
@@ -135,6 +138,16 @@ class Bars {
 
     void warn(const std::string& sentence) const {
         if (!quiet_) cli::warn("analyze strength", sentence);
+    }
+
+    /// Refuses blocks; keeps what the test warns of, and warns of short bars where it does not.
+    void check_slenderness(const io::Document& document) {
+        options_.bar.refuse_block(document);
+        for (const std::string& sentence : options_.bar.warnings(document)) warnings_.push_back(source_of(document.place) + ": " + sentence);
+        if (const auto sentence = options_.bar.short_bar_warning(document, std::nullopt)) {
+            warn(document.place + ": " + *sentence);
+            warnings_.push_back(source_of(document.place) + ": " + *sentence);
+        }
     }
 
     /// A row a bar; a size that is no column is the option's.
@@ -149,6 +162,9 @@ class Bars {
             for (std::size_t row = 0; row < force.size(); ++row) {
                 const double b = width ? (*width)[row] : size(sizes, "width"), h = height ? (*height)[row] : size(sizes, "height");
                 if (!(b > 0.0 && h > 0.0)) throw io::PlacedError(table.place(row) + ": a width or height is not above zero");
+                sizes.place = table.place(row);
+                sizes.header["height"] = h;
+                cli::at_place(sizes.place, [&] { check_slenderness(sizes); });
                 add_bar(std::abs(force[row]), span, b, h, source_of(table.place(row)));
             }
         });
@@ -162,6 +178,7 @@ class Bars {
         if (!broke && curve.force.back() < 0.5 * peak) throw Error("the bar was unloaded and did not break");
         if (!broke) warn(document.place + ": the record ends under load; the bar is taken to break at its largest force");
         if (!document.header["turned"].empty()) warn(turned_sentence(document));
+        check_slenderness(document);
         add_bar(peak, size(document, "span"), size(document, "width"), size(document, "height"), source_of(document.place));
         for (const char* key : {"columns", "turned"}) bars_.back()[key] = document.header[key];
         bars_.back()["fall_recorded"] = broke;
@@ -182,6 +199,7 @@ class Bars {
 
     const StrengthOptions& options_;
     bool quiet_;
+    Json warnings_ = Json::array();
     std::vector<Json> bars_;
     std::vector<double> strengths_;
 };
@@ -196,7 +214,8 @@ Json strength_result(const Bars& bars) {
                 {"bars", strengths.size()},
                 {"strengths", bars.bars()},
                 {"mean_strength", spread->mean},
-                {"standard_deviation", strengths.size() > 1 ? Json(spread->standard_deviation * of_sample) : Json()}};
+                {"standard_deviation", strengths.size() > 1 ? Json(spread->standard_deviation * of_sample) : Json()},
+                {"warnings", bars.warnings()}};
     for (const char* key : {"weibull_modulus", "unbiased_weibull_modulus", "unbiasing_factor", "characteristic_strength",
                             "confidence_intervals"})
         result[key] = nullptr;

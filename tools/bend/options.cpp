@@ -43,6 +43,9 @@ void Options::add_to(CLI::App& app) {
     app.description(description);
     app.footer(footer);
     cli::add_quantity(app, "--span", span, Dimension::length, "Distance between the supports", "0.8 of the bar's length");
+    app.add_flag("--allow-block", allow_block,
+                 "Also bend what is no bar: a span L below twice the height h, for which the formulas of beams do not hold. Below "
+                 "L/h = 4 there is a warning, which the result keeps");
     cli::add_quantity(app, "--punch-radius", punch_radius, Dimension::length, "Radius of the three cylinders",
                       "0.75 of the bar's height");
     auto* deflection = cli::add_quantity(app, "--max-deflection", max_deflection, Dimension::length,

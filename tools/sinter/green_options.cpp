@@ -23,7 +23,7 @@ constexpr const char* green_description =
 
 constexpr const char* green_footer =
     "Examples:\n"
-    "  sinter green -n 3000 --density 0.43 --aspect 4:1:1 --seed 1 -o green.kiln\n"
+    "  sinter green -n 3000 --density 0.43 --aspect 6:1:1 --seed 1 -o green.kiln\n"
     "  sinter green -n 99000 | sinter --temperature 1200C --to-density 0.67 -o sintered.kiln\n"
     "  sinter green -n 6000 --distribution percentiles:80nm:120nm:200nm |\n"
     "      analyze density | jq .diameter.by_volume\n"
