@@ -20,7 +20,7 @@ printf '.TH %s 1 "" "%s" "Kiln"\n.SH NAME\n%s \\- %s\n' "${name^^}" "$version" "
 page DESCRIPTION "$program"
 if [ "$name" = sinter ]; then page 'SINTER GREEN' "$program" green; fi
 if [ "$name" = analyze ]; then
-    for command in info density bonds select modulus elastic conductivity fit mean kinetics; do
+    for command in info density bonds select modulus elastic conductivity fit mean kinetics materials; do
         if "$program" "$command" --help >/dev/null 2>&1; then page "ANALYZE ${command^^}" "$program" "$command"; fi
     done
 fi

@@ -42,7 +42,25 @@ constexpr Activated activated[] = {
     {"boundary_mobility", &Material::mobility_prefactor, &Material::mobility_activation},
 };
 
+/// The two numbers of an object; throws Error that says which is missing and what there is instead.
+void check_activated(const Json& object, const std::string& where) {
+    std::string missing, there;
+    for (const char* key : {"prefactor", "activation_energy"})
+        if (!object.is_object() || !object.contains(key)) missing += (missing.empty() ? "" : " and ") + std::string(key);
+    if (missing.empty()) return;
+    if (object.is_object())
+        for (const auto& [key, value] : object.items()) there += (there.empty() ? "; it has " : ", ") + clipped(key);
+    throw Error(where + " needs " + missing + there);
+}
+
 }  // namespace
+
+std::vector<std::string> material_keys() {
+    std::vector<std::string> keys;
+    for (const Field& field : fields) keys.emplace_back(field.key);
+    for (const Activated& field : activated) keys.emplace_back(field.key);
+    return keys;
+}
 
 Material material_from(const Json& json, const std::string& place) {
     if (!json.is_object() || !json.contains("name") || !json["name"].is_string())
@@ -60,8 +78,7 @@ Material material_from(const Json& json, const std::string& place) {
     for (const Activated& field : activated) {
         if (!json.contains(field.key)) continue;
         const Json& object = json[field.key];
-        if (!object.is_object() || !object.contains("prefactor") || !object.contains("activation_energy"))
-            throw Error(where + field.key + " needs prefactor and activation_energy");
+        check_activated(object, where + field.key);
         material.*field.prefactor = number_from(object["prefactor"], where + "prefactor", 0.0);
         material.*field.energy = number_from(object["activation_energy"], where + "activation_energy", 0.0);
         Json& carried = other[field.key];

@@ -9,6 +9,9 @@
 
 namespace kiln::io {
 
+/// The keys of a material that programs read, besides its name.
+std::vector<std::string> material_keys();
+
 /// JSON of one material, as it stands in a document.
 Json material_json(const Material& material);
 

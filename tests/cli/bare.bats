@@ -137,7 +137,7 @@ refused() {
     run -0 jq -e '[.materials[].name] == ["glass", "alumina"]' \
         <("$SINTER" -q --temperature 1200C --at-time 1s --material glass.json,alumina --text numbered.jsonl)
     jq -c '.materials = [{name: "unknown"}]' pair.jsonl >unknown.jsonl
-    refused "unknown.jsonl, document 1: material 'unknown' has no surface_energy; --material NAME or FILE.json says what it is$" \
+    refused "unknown.jsonl, document 1: material 'unknown' has no surface_energy, atomic_volume, grain_boundary_diffusion, which sintering needs; --material NAME or FILE.json says what it is$" \
         "$SINTER" --temperature 1200C --at-time 1s unknown.jsonl
     "$SINTER" -q --temperature 1200C --at-time 1s --material alumina -o known.kiln unknown.jsonl
     refused "unobtainium" "$SINTER" --temperature 1200C --at-time 1s --material unobtainium green.jsonl

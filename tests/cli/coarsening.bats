@@ -115,7 +115,7 @@ END
 @test "what coarsening lacks and what does not go with it is refused in a sentence" {
     "$SINTER" green -n 50 --density 0.5 -o plain.kiln
     run -1 "$SINTER" --temperature 1300C --coarsening surface --at-time 1s plain.kiln
-    assert_output --partial "material 'alumina' has no surface_diffusion, which coarsening needs"
+    assert_output --partial "material 'alumina' has no surface_diffusion, which coarsening by surface diffusion needs"
     run -2 "$SINTER" --temperature 1300C --coarsening volume --at-time 1s plain.kiln
     assert_output --partial "--coarsening: 'volume' is none of surface, boundary"
     run -2 "$SINTER" --temperature 1300C --coarsening surface --method explicit --at-time 1s plain.kiln

@@ -33,7 +33,7 @@ assert_sentence() { assert_equal "$stderr" "$1"; }
 @test "sinter names the document of a material that cannot sinter, and of a density that lies behind" {
     jq -c '.materials = [{name: "m", diffusion_parameter: 1e-40}]' green.jsonl >poor.jsonl
     run -1 --separate-stderr "$SINTER" -q --temperature 1200C --to-density 0.5 --text green.jsonl poor.jsonl
-    assert_sentence "sinter: poor.jsonl, document 1: material 'm' has no surface_energy; --material NAME or FILE.json says what it is"
+    assert_sentence "sinter: poor.jsonl, document 1: material 'm' has no surface_energy, which sintering needs; --material NAME or FILE.json says what it is"
     run -1 --separate-stderr "$SINTER" -q --temperature 1200C --to-density 0.5 --text green.jsonl fired.jsonl
     assert_regex "$stderr" "^sinter: fired.jsonl, document 1: the density 0\.5 "
 }

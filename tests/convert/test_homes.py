@@ -101,6 +101,8 @@ class Homes(unittest.TestCase):
             made = subprocess.run([program("SINTER"), "green", "-q", "-n", "8", "--material", name, "--text"],
                                   capture_output=True, check=True)
             self.assertEqual(json.loads(made.stdout)["materials"], [material])
+        listed = subprocess.run([program("ANALYZE"), "materials"], capture_output=True, check=True).stdout.splitlines()
+        self.assertEqual({json.loads(line)["name"] for line in listed}, set(convert_materials.BUILT_IN))
 
 
 if __name__ == "__main__":

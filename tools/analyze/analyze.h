@@ -17,5 +17,6 @@ int voxel(int argc, char** argv);
 int fit(int argc, char** argv);
 int mean(int argc, char** argv);
 int kinetics(int argc, char** argv);
+int materials(int argc, char** argv);
 
 }  // namespace kiln::analyze

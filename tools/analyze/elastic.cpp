@@ -182,6 +182,7 @@ int elastic(int argc, char** argv) {
         material.warn_by([&](const std::string& sentence) {
             if (!common.quiet) cli::warn("analyze elastic", sentence);
         });
+        material.needed_for({physics::Use::elasticity});
         cli::for_each_state(input, material, [&](const State& state, const std::string&) {
             if (options.model == Model::network) {
                 add(of_network(state, model, options.tolerance));

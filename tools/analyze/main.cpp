@@ -30,6 +30,7 @@ constexpr std::array subcommands{
     Subcommand{"fit", "laws of Young's modulus against porosity through several tests or measurements", analyze::fit},
     Subcommand{"mean", "means of several results, with their intervals of confidence", analyze::mean},
     Subcommand{"kinetics", "activation energies and constants of diffusion from measured curves of density", analyze::kinetics},
+    Subcommand{"materials", "the built-in materials with their sources, and what a material lacks", analyze::materials},
 };
 
 /// `analyze`, `analyze --help`, or a subcommand that does not exist.

@@ -47,6 +47,9 @@ int run(int argc, char** argv) {
     material.warn_by([&](const std::string& sentence) {
         if (!common.quiet) cli::warn("bend", sentence);
     });
+    std::vector<physics::Use> uses{physics::Use::elasticity};
+    if (options.method == bending::Method::motion) uses.push_back(physics::Use::inertia);
+    material.needed_for(std::move(uses));
     cli::for_each_state(input, material, [&](State state, const std::string& place) {
         Json history = io::history_of(state);
         const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, place); }};

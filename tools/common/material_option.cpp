@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "io/material_check.h"
 #include "io/material_io.h"
 #include "io/state_io.h"
 #include "physics/materials.h"
@@ -27,9 +28,8 @@ void MaterialOption::add_to(CLI::App& app) {
                for (std::string name; std::getline(names, name, ',');) materials_.push_back(io::material_named(name));
                if (materials_.empty()) materials_.push_back(io::material_named(list));  // nothing, which is no name
            },
-           "Materials in place of those of the state, in their order: built-in ones, or files NAME.json; a state that names none "
-           "is "
-           "taken for alumina, with a warning")
+           "Materials in place of those of the state, in their order: built-in ones (analyze materials lists them), or files "
+           "NAME.json; a state that names none is taken for alumina, with a warning")
         ->type_name("NAME,...");
 }
 
@@ -45,13 +45,32 @@ State MaterialOption::state_from(io::Document document) const {
         for (const Material& material : materials_) materials.push_back(io::material_json(material));
         header["materials"] = std::move(materials);
     }
+    for (const Material& material : materials_)
+        for (const std::string& sentence : io::unknown_keys(material)) warn_once(sentence);
     State state = io::state_from(std::move(document));
     const bool assumed = std::ranges::any_of(state.materials, io::is_assumed);
     if (assumed && !warned_ && warn_) {
         warn_(place + ": names no material, and alumina is assumed" + say_what);
         warned_ = true;
     }
+    check(state, place);
     return state;
+}
+
+void MaterialOption::check(const State& state, const std::string& place) const {
+    std::vector<char> used(state.materials.size());
+    for (const std::int32_t row : state.particles.material) used[static_cast<std::size_t>(row)] = 1;
+    for (std::size_t row = 0; row < used.size(); ++row) {
+        if (!used[row]) continue;
+        const Material& material = state.materials[row];
+        for (const std::string& sentence : io::implausible_constants(material, uses_)) warn_once(sentence);
+        const std::string missing = io::missing_sentence(material, uses_);
+        if (!missing.empty()) throw io::PlacedError(place + ": " + missing + say_what);
+    }
+}
+
+void MaterialOption::warn_once(const std::string& sentence) const {
+    if (warn_ && told_.insert(sentence).second) warn_(sentence);
 }
 
 void for_each_state(io::Input& input, const MaterialOption& material,

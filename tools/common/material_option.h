@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "io/files.h"
+#include "physics/materials.h"
 
 namespace CLI {
 class App;
@@ -22,12 +24,21 @@ class MaterialOption {
     /// Who is told that a material is assumed; nobody by default.
     void warn_by(std::function<void(const std::string& sentence)> warn) { warn_ = std::move(warn); }
 
+    /// What will be done with the materials: state_from() refuses those that lack a constant of it, with all that they lack, before
+    /// anything is computed, and warns of constants that no solid has.
+    void needed_for(std::vector<physics::Use> uses) { uses_ = std::move(uses); }
+
     /// The state of a document: with the materials of --material in place of its own, in the same order, where there are any.
     /// Throws PlacedError as io::state_from() does, and where their number is another.
     State state_from(io::Document document) const;
 
    private:
+    void check(const State& state, const std::string& place) const;
+    void warn_once(const std::string& sentence) const;
+
     std::vector<Material> materials_;
+    std::vector<physics::Use> uses_;
+    mutable std::set<std::string> told_;
     std::function<void(const std::string&)> warn_;
     mutable bool warned_ = false;
 };

@@ -17,6 +17,7 @@
 #include "io/files.h"
 #include "io/state_io.h"
 #include "tools/sinter/green_options.h"
+#include "io/material_check.h"
 #include "io/material_io.h"
 
 namespace kiln::sinter {
@@ -136,6 +137,17 @@ void report_spheres(const Json& summary, std::size_t spheres) {
         cli::warn("sinter green", "no spheres touch; --swell brings them together by a fraction of their distances");
 }
 
+/// What is wrong with a material, and what it cannot be used for, before anything is made of it.
+void report_material(const Material& material, bool of_file) {
+    using physics::Use;
+    const auto warn = [](const std::string& sentence) { cli::warn("sinter green", sentence); };
+    const std::vector<Use> all{Use::sintering, Use::surface_coarsening, Use::boundary_coarsening, Use::elasticity, Use::inertia};
+    for (const std::string& sentence : io::unknown_keys(material)) warn(sentence);
+    for (const std::string& sentence : io::implausible_constants(material, all)) warn(sentence);
+    const std::string missing = io::missing_sentence(material, of_file ? all : std::vector<Use>{Use::sintering, Use::elasticity});
+    if (!missing.empty()) warn(missing);
+}
+
 State spheres_of(const GreenOptions& options) {
     const packing::SphereList spheres = packing::read_spheres(options.spheres, options.manner);
     return cli::at_place(options.spheres, [&] { return packing::body_of(spheres, options.body); });
@@ -150,6 +162,7 @@ int green(int argc, char** argv) {
     cli::parse(app, argc, argv, options.common);
     options.complete(app);
     const Material material = io::material_named(options.material);
+    if (!options.common.quiet) report_material(material, options.material.ends_with(".json"));
     io::Output output(options.common.output, options.common.text);
 
     State state;

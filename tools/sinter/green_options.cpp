@@ -92,7 +92,7 @@ void GreenOptions::add_to(CLI::App& app) {
         ->default_str("1:1:1")
         ->type_name("X:Y:Z");
     add_spheres(app);
-    app.add_option("--material", material, "Built-in material, or a file NAME.json that holds one")
+    app.add_option("--material", material, "Built-in material (analyze materials lists them), or a file NAME.json that holds one")
         ->capture_default_str()
         ->type_name("NAME");
     cli::add_number(app, "--seed", packing.seed, {}, "Seed of the random numbers");

@@ -45,6 +45,7 @@ int sinter_states(int argc, char** argv) {
         if (!common.quiet) cli::warn("sinter", sentence);
     };
     material.warn_by(warn);
+    material.needed_for(options.uses());
     return sinter::run(input, material, options, {states, history ? &*history : nullptr, progress, entry, warn, checkpoint},
                        earlier);
 }

@@ -197,6 +197,14 @@ sintering::SinteringSettings Options::settings(double start) const {
     return settings;
 }
 
+std::vector<physics::Use> Options::uses() const {
+    std::vector<physics::Use> all{physics::Use::sintering};
+    if (coarsening.surface || coarsening.neck_growth) all.push_back(physics::Use::surface_coarsening);
+    if (coarsening.boundary) all.push_back(physics::Use::boundary_coarsening);
+    if (method == SinterMethod::explicit_steps) all.push_back(physics::Use::inertia);
+    return all;
+}
+
 double Options::last_time(double start) const { return settings(start).schedule.end(); }
 
 }  // namespace kiln::sinter

@@ -7,6 +7,7 @@
 
 #include "io/furnace_log.h"
 #include "io/json_forward.h"
+#include "physics/materials.h"
 #include "sintering/sintering.h"
 
 namespace CLI {
@@ -52,6 +53,9 @@ struct Options {
 
     /// Settings of the method for a state at the time `start` (s), where the schedule begins; --at-time is on its own clock.
     sintering::SinteringSettings settings(double start) const;
+
+    /// What the run does with a material.
+    std::vector<physics::Use> uses() const;
 
     /// Time at which the run ends if nothing else ends it, s; infinity for a hold.
     double last_time(double start) const;

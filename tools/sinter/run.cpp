@@ -21,6 +21,8 @@ namespace {
 constexpr double validity_limit = 0.9;  // relative density above which grain growth, which is not modelled, matters
 constexpr double closed_pores = 0.92;   // relative density above which the pores of a body are no longer connected
 constexpr std::size_t few_grains = 100;  // of which the means of a body do not mean much
+constexpr double too_fast = 1e-7;      // s to the densification of visible_densification: sound crosses a grain in 1e-10 s
+constexpr double visible_densification = 0.02;
 constexpr double full_density = 1.0;    // that no body passes
 constexpr double max_contacts = 60.0;  // mean coordination number; a body without pores has about 14
 constexpr double max_overlap = 0.5;    // mean, over the sum of the radii; a body without pores has about 0.2
@@ -105,6 +107,8 @@ class Sintered {
           sinks_(sinks),
           progressed_(std::move(run_state)),
           targets_(options, kiln::relative_density(state), state.time),
+          start_density_(kiln::relative_density(state)),
+          start_(state.time),
           method_(method_of(std::move(state), options)) {}
 
     void take_up(const io::Checkpoint& checkpoint) {
@@ -177,11 +181,23 @@ class Sintered {
         if (sinks_.history) sinks_.history->write(summary);
         sinks_.progress.detail(summary);
         warn_of_limits(density, record);
+        warn_of_haste(record);
         sinks_.progress.show(targets_.fraction(record.relative_density, record.time),
                              "relative density " + Json(std::round(1e4 * record.relative_density) / 1e4).dump());
         // A signal that comes after the last look at it: this step's state is the last.
         const bool last_of_all = cli::stop_requested() && !sinks_.checkpoint.requested();
         if (targets_.reached(record.relative_density, record.time, time_goal) || last_of_all || full()) write_state(summary);
+    }
+
+    /// Once: times that no powder needs, which come of a wrong constant.
+    void warn_of_haste(const sintering::StepRecord& record) {
+        if (hasty_ || !(record.relative_density > start_density_ + visible_densification)) return;
+        hasty_ = true;
+        const double since = record.time - start_;
+        if (since < too_fast)
+            warn("at " + Json(record.temperature).dump() + " K the relative density is " +
+                 Json(std::round(1e4 * record.relative_density) / 1e4).dump() + " after " + Json(since).dump() +
+                 " s: no powder sinters so fast, see the units of the material's constants");
     }
 
     /// What the model leaves out from here on.
@@ -223,6 +239,8 @@ class Sintered {
     const Sinks& sinks_;
     io::RunState progressed_;
     Targets targets_;
+    double start_density_, start_;  // of the run; s
+    bool hasty_ = false;  // the first densification has been looked at
     bool few_ = false;  // grains are left
     Json last_summary_ = Json::object();
     std::unique_ptr<sintering::SinteringMethod> method_;

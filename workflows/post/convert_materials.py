@@ -23,7 +23,15 @@ DIHEDRAL = {"name": "alumina-dihedral", "surface_energy": 0.905, "atomic_volume"
             "dihedral_angle": 138.0 * math.pi / 180.0,
             "surface_diffusion": {"prefactor": 3e-10 * 0.09, "activation_energy": 313.8e3},
             "boundary_mobility": {"prefactor": 0.01, "activation_energy": 443e3}}
-BUILT_IN = {"alumina": ALUMINA, "alumina-dihedral": {**ALUMINA, **DIHEDRAL}}
+OTHERS = ({"name": "copper", "density": 8960.0, "surface_energy": 1.79, "atomic_volume": 1.18e-29, "young_modulus": 127e9,
+           "poisson_ratio": 0.345, "grain_boundary_diffusion": {"prefactor": 5.0e-15, "activation_energy": 104e3}},
+          {"name": "nickel", "density": 8908.0, "surface_energy": 2.4, "atomic_volume": 1.09e-29, "young_modulus": 200e9,
+           "poisson_ratio": 0.31, "grain_boundary_diffusion": {"prefactor": 3.5e-15, "activation_energy": 115e3}},
+          {"name": "silver", "density": 10490.0, "surface_energy": 1.25, "atomic_volume": 1.71e-29,
+           "grain_boundary_diffusion": {"prefactor": 4.5e-15, "activation_energy": 90e3}},
+          {"name": "zirconia-3y", "density": 6050.0, "surface_energy": 2.21, "atomic_volume": 3.37e-29,
+           "dihedral_angle": 2.0 * math.acos(0.5 * 0.73 / 2.21), "young_modulus": 205e9, "poisson_ratio": 0.30})
+BUILT_IN = {"alumina": ALUMINA, "alumina-dihedral": {**ALUMINA, **DIHEDRAL}, **{each["name"]: each for each in OTHERS}}
 MOST_TYPES = 1000  # more than any file has; a larger number is a mistake
 
 
