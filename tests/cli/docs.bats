@@ -79,6 +79,12 @@ END
     assert_output --partial "asked for"
 }
 
+@test "materials: the built-in ones, one of one's own, and one without diffusion data" {
+    run_page docs/materials.md
+    assert_output --partial "is surface_energy meant?"
+    assert_output --regexp "zirconia-3y +6050 "
+}
+
 @test "no page has commands that are not run here" {
     run -0 grep -lE '^```(sh|bash|console|shell)$' -r "$ROOT/docs" "$ROOT/README.md" "$ROOT/CONTRIBUTING.md"
     for page in "${lines[@]}"; do
