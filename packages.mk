@@ -6,7 +6,7 @@ PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio libj
 # without.
 NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
 # What single tests need and are skipped without: `make optional-packages` installs them.
-OPTIONAL_PACKAGES := mypy python3-pandas
+OPTIONAL_PACKAGES := mypy python3-pandas slurmctld slurmd slurm-client munge
 # Further checks, by hand only: `make fuzz`, `make tsan`, `make tidy`.
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
 TSAN_PACKAGES := $(FUZZ_PACKAGES) libomp-14-dev
@@ -38,7 +38,7 @@ $(BUILD)/packages-present: packages.mk
 	@touch $@
 
 .PHONY: optional-packages
-optional-packages:              ## install what single tests are skipped without: mypy, pandas
+optional-packages:              ## install what single tests are skipped without: mypy, pandas, Slurm
 	@$(call install_missing,$(OPTIONAL_PACKAGES))
 
 # Without these the tests that need them are skipped.
