@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "physics/materials.h"
+#include "sintering/die.h"
 
 namespace kiln::sintering {
 
@@ -139,6 +140,7 @@ void ExplicitSintering::accelerate(const BoxForce& box, double step) {
         const auto k = static_cast<Eigen::Index>(axis);
         if (!body_.box().periodic[axis] || settings_.fixed[axis]) continue;
         strain_rate_[k] -= step * (box.force[k] + settings_.pressure[k] * volume) / box_inertia_[k];
+        if (settings_.confined[axis] && die_gap(body_.strain())[k] == 0.0) strain_rate_[k] = std::min(strain_rate_[k], 0.0);
     }
 }
 
@@ -147,6 +149,7 @@ Motion ExplicitSintering::motion_over(double step) const {
     for (std::size_t particle = 0; particle < body_.size(); ++particle)
         Eigen::Map<Vec3>(&motion.displacement[3 * particle]) = step * velocity_[particle];
     motion.strain = step * strain_rate_;
+    Die(settings_.confined, {}, die_gap(body_.strain())).confine(motion.strain);
     return motion;
 }
 

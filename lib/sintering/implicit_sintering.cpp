@@ -66,14 +66,14 @@ double ImplicitSintering::first_duration() {
     return std::isfinite(shortest) ? shortest : 1.0;
 }
 
-Eigen::Matrix3d ImplicitSintering::allowed_strain(const std::array<bool, 3>& locked) const {
+Eigen::Matrix3d ImplicitSintering::allowed_strain(const Axes& still) const {
     // Along an axis that no contacts reach through, nothing resists or drives a strain: it follows the mean of the axes that
     // contacts do reach through, so that loose clusters move with the flow of the whole.
-    const std::array<bool, 3> percolates = percolating_axes(body_.size(), candidates_.touching());
+    const Axes percolates = percolating();
     std::vector<Vec3> basis;
     Vec3 followers = Vec3::Zero();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!body_.box().periodic[axis] || settings_.fixed[axis] || locked[axis]) continue;
+        if (!body_.box().periodic[axis] || settings_.fixed[axis] || still[axis]) continue;
         const Vec3 along = Vec3::Unit(static_cast<Eigen::Index>(axis));
         if (percolates[axis])
             basis.push_back(along);
@@ -105,6 +105,7 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
     for (;;) {  // until no pair that comes to touch was left out; ends, since what is chosen only grows
         Motion nodes = problem.clusters.nodes(motion);
         project(nodes, problem.settings.allowed_strain);
+        if (problem.settings.held_strain) nodes.strain += *problem.settings.held_strain;
         trial.report = second ? problem.step->second_order(problem.clusters.nodes(trial.first_order), nodes)
                               : problem.step->first_order(nodes);
         trial.converged = trial.converged && trial.report.converged;
@@ -120,6 +121,31 @@ void ImplicitSintering::solve(Problem& problem, bool second, Trial& trial) {
     }
 }
 
+Die ImplicitSintering::die_of(const Axes& locked) const {
+    Axes confined = settings_.confined;
+    if (confined == Axes{}) return {{}, {}, Vec3::Zero()};
+    for (std::size_t axis = 0; axis < 3; ++axis) confined[axis] = confined[axis] && !locked[axis];
+    return {confined, percolating(), die_gap(body_.strain())};
+}
+
+void ImplicitSintering::hold(Problem& problem) const {
+    Axes still = problem.clusters.locked();
+    for (std::size_t axis = 0; axis < 3; ++axis) still[axis] = still[axis] || problem.die.held()[axis];
+    problem.settings.allowed_strain = allowed_strain(still);
+    if (problem.die.held() != Axes{}) problem.settings.held_strain = problem.die.strain();
+    else problem.settings.held_strain.reset();
+}
+
+void ImplicitSintering::solve_confined(Problem& problem, bool second, Trial& trial) {
+    for (;;) {
+        solve(problem, second, trial);
+        if (trial.too_far || !problem.die.revise((second ? trial.motion : trial.first_order).strain, trial.report.stress)) break;
+        hold(problem);
+        problem.take(body_, candidates_);
+    }
+    if (!trial.too_far && problem.die.pulls(trial.report.stress)) trial.converged = false;
+}
+
 ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& guess) {
     Trial trial;
     trial.until = until;
@@ -130,18 +156,18 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     candidates_.choose(guess, guess, diffusion);
     const RigidClusters clusters(body_.box(), body_.particles().position, candidates_.sticking());
     const double closely = settings_.solver_tolerance * (body_.size() < small_packing ? small_fraction : 1.0);
-    const StepSettings settings{.allowed_strain = allowed_strain(clusters.locked()),
-                                .pressure = candidates_.unit() * settings_.pressure,
+    const StepSettings settings{.pressure = candidates_.unit() * settings_.pressure,
                                 .first_tolerance = closely * (settings_.second_order ? predictor_fraction : first_order_fraction),
                                 .second_tolerance = closely,
                                 .balance_first = !settings_.second_order,
                                 .stop = settings_.stop};
-    Problem problem{diffusion, clusters, settings, std::nullopt};
+    Problem problem{diffusion, clusters, settings, die_of(clusters.locked()), std::nullopt};
+    hold(problem);
     problem.take(body_, candidates_);
     trial.motion = trial.first_order = guess;
-    solve(problem, false, trial);
+    solve_confined(problem, false, trial);
     trial.motion = trial.first_order;
-    if (!trial.too_far) solve(problem, true, trial);
+    if (!trial.too_far) solve_confined(problem, true, trial);
     if (trial.too_far) return trial;
     for (std::size_t axis = 0; axis < 3; ++axis)  // without faces there is no stress to speak of
         trial.report.stress[static_cast<Eigen::Index>(axis)] *= body_.box().periodic[axis] ? 1.0 / candidates_.unit() : 0.0;
@@ -170,6 +196,7 @@ ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& d
     }
     for (int pass = 0; pass < 3; ++pass) {  // the logarithm of the density is nearly linear in the motion
         trial.motion = scaled(trial.motion, log_change / trial.log_density);
+        Die(settings_.confined, {}, die_gap(body_.strain())).confine(trial.motion.strain);
         trial.log_density = body_.log_density_change(trial.motion);
     }
     duration = here;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "sintering/candidates.h"
+#include "sintering/die.h"
 #include "sintering/sintering.h"
 
 namespace kiln::sintering {
@@ -32,12 +33,15 @@ class ImplicitSintering : public SinteringMethod {
         double middle = 0.0;         // s, up to which grains coarsen before the motion
         double rate_change = 0.0;    // by that, of the logarithm of the rate of densification
     };
-    Eigen::Matrix3d allowed_strain(const std::array<bool, 3>& locked) const;
+    /// still: axes along which the box does not strain of itself.
+    Eigen::Matrix3d allowed_strain(const Axes& still) const;
+    Axes percolating() const { return percolating_axes(body_.size(), candidates_.touching()); }
     /// What a trial step solves, on the pairs chosen last.
     struct Problem {
         const std::vector<double>& diffusion;  // of each pair of materials over the step, m5/N
         const RigidClusters& clusters;
-        const StepSettings& settings;
+        StepSettings settings;
+        Die die;
         std::optional<SinterStep> step;
 
         void take(const SinteringBody& packing, Candidates& candidates);
@@ -45,6 +49,11 @@ class ImplicitSintering : public SinteringMethod {
     /// True where a span of time is so cold, or the particles so coarse, that no position would change by its last digit.
     bool nothing_moves(double from, double until) const;
     void solve(Problem& problem, bool second, Trial& trial);
+    /// The same within the walls of the die.
+    void solve_confined(Problem& problem, bool second, Trial& trial);
+    Die die_of(const Axes& locked) const;
+    /// Takes what the die holds into the settings of the step.
+    void hold(Problem& problem) const;
     Trial attempt(double until, const Motion& guess);
     double step_error(const Trial& trial) const;  // estimated, relative, of the density
     double length_factor_for(const Trial& trial) const;    // factor to the length of step that the tolerance allows

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -37,6 +38,7 @@ struct PairStep {
 
 struct StepSettings {
     Eigen::Matrix3d allowed_strain = Eigen::Matrix3d::Identity();  // projector onto the strains that the box may take
+    std::optional<Vec3> held_strain{};                // along the other axes, if not zero
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
     bool balance_first = true;  // judge the motion of first order particle by particle; not needed where it only predicts

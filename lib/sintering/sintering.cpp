@@ -27,8 +27,13 @@ SinteringMethod::SinteringMethod(State state, const SinteringSettings& settings)
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (settings_.fixed[axis] && !body_.box().periodic[axis])
             throw Error(std::string("the box has no faces to hold along ") + "xyz"[axis] + ", which is not periodic");
-        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (settings_.fixed[axis] || !body_.box().periodic[axis]))
-            throw Error("a pressure along an axis that is fixed or not periodic moves nothing");
+        if (settings_.confined[axis] && !body_.box().periodic[axis])
+            throw Error(std::string("the box has no faces for a die along ") + "xyz"[axis] + ", which is not periodic");
+        if (settings_.confined[axis] && settings_.fixed[axis])
+            throw Error(std::string("the box is either fixed or confined along ") + "xyz"[axis] + ", not both");
+        const bool held = settings_.fixed[axis] || settings_.confined[axis];
+        if (settings_.pressure[static_cast<Eigen::Index>(axis)] != 0.0 && (held || !body_.box().periodic[axis]))
+            throw Error("a pressure along an axis that is fixed, confined or not periodic moves nothing");
     }
 }
 

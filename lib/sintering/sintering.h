@@ -22,6 +22,7 @@ struct SinteringSettings {
     physics::ContactConstants constants;
     Faces faces = Faces::as_given;
     std::array<bool, 3> fixed{false, false, false};  // axes along which the box keeps its length
+    std::array<bool, 3> confined{false, false, false};  // axes along which a die of the box's length at the start holds, see die.h
     Vec3 pressure = Vec3::Zero();                   // Pa, compressive, along the periodic axes
     double tolerance = 3e-4;         // relative error of the density over the whole run that the steps aim at
     double solver_tolerance = 3e-3;  // relative error of a step's motion in the energy norm

@@ -76,7 +76,7 @@ setup_file() {
 
 @test "a value that is none is refused by every option that takes one, in a sentence that names it" {
     # What takes a file takes any word, and some are looked at once all options are known.
-    free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --schedule --distribution --image --columns --spheres --time-column --temperature-column --curve --hold-out --grain-size --save-material --force-column --deflection-column --plot"
+    free="--output --states --history --checkpoint --config --data --material --from --to --like --report --boundary --method --fix --confine --schedule --distribution --image --columns --spheres --time-column --temperature-column --curve --hold-out --grain-size --save-material --force-column --deflection-column --plot"
     while read -ra command; do
         [[ ${command[0]} != dem-* ]] || continue
         while read -r option; do

@@ -16,7 +16,7 @@ tried() {
 }
 
 @test "a packing that is moved, renumbered, turned, mirrored, repeated or named otherwise sinters alike" {
-    tried 1 sinter_translated sinter_carried sinter_moved sinter_renumbered sinter_turned sinter_repeated sinter_two_names
+    tried 1 sinter_translated sinter_carried sinter_moved sinter_renumbered sinter_turned sinter_repeated sinter_two_names sinter_in_die
 }
 
 @test "times of sintering scale with lengths, diffusion and surface energy; the explicit method too" {

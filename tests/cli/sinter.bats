@@ -43,6 +43,33 @@ last() { "$ANALYZE" info "$1" | tail -1 | jq ".last_step.summary$2"; }
     run -0 jq -ne --argjson s "$(last forged.kiln)" '$s.strain[2] < 2 * $s.strain[0] and ($s.stress[2] / -1e7 - 1 | fabs) < 1e-3'
 }
 
+@test "hot pressing in a die: the walls press or are clear of the body, and never pull; resumed it is the same" {
+    fired() { "$SINTER" --temperature 1200C --to-density 0.55,0.58 "$@" green.kiln; }
+    fired --confine xy --pressure 0MPa,0MPa,100MPa -o die.kiln --history die.jsonl
+    fired --fix xy --pressure 0MPa,0MPa,100MPa -o fixed.kiln
+    # Pressed all the time, they are the walls of a box of fixed length; without a pressure nobody meets them.
+    run -0 jq -e '.stress[0] < -1e6 and .stress[1] < -1e6 and .strain[0] == 0' <(last die.kiln)
+    assert_equal "$(last die.kiln '| [.time, .strain, .stress]')" "$(last fixed.kiln '| [.time, .strain, .stress]')"
+    fired --confine xyz -o clear.kiln
+    fired -o free.kiln
+    near "$(last clear.kiln .time)" "$(last free.kiln .time)" 1e-4
+    run -0 jq -ne --argjson s "$(last clear.kiln)" '($s.stress | map(fabs) | max) < 1e3 and ($s.strain | max) < -0.01'
+    # Between the two the body leaves both walls and comes back to one after the other; a run that is killed goes on alike.
+    between=(--confine xy --pressure 0MPa,0MPa,15MPa)
+    fired "${between[@]}" -o whole.kiln --history whole.jsonl
+    run -0 jq -se 'all(.[]; .strain[0] <= 1e-12 and .strain[1] <= 1e-12 and .stress[0] < 1e4 and .stress[1] < 1e4) 
+        and (map(.strain[0]) | min) < -1e-4 and (.[0].stress[1] | fabs) < 1e3 and .[-1].stress[0] < -1e5 and .[-1].stress[1] < -1e5' whole.jsonl
+    for delay in 0.05 0.1 0.15; do
+        fired "${between[@]}" -o parts.kiln --history parts.jsonl --checkpoint run.kiln --checkpoint-every 0s --resume & pid=$!
+        sleep "$delay"
+        kill -9 $pid 2>/dev/null || true
+        wait $pid 2>/dev/null || true
+    done
+    fired "${between[@]}" -o parts.kiln --history parts.jsonl --checkpoint run.kiln --checkpoint-every 0s --resume
+    cmp parts.kiln whole.kiln
+    cmp parts.jsonl whole.jsonl
+}
+
 @test "--boundary free sinters a body without faces; --report viscosity adds stress and viscosities" {
     "$SINTER" --temperature 1200C --boundary free --to-density 0.55 -o body.kiln green.kiln
     run -0 jq -e '.box.periodic == [false, false, false]' <("$ANALYZE" info body.kiln)
@@ -69,6 +96,9 @@ last() { "$ANALYZE" info "$1" | tail -1 | jq ".last_step.summary$2"; }
 --temperature 1200C --to-density 0.6 --pressure 1MPa,2MPa|one value or three
 --temperature 1200C --to-density 0.6 --pressure 10|has no unit
 --temperature 1200C --to-density 0.6 --boundary free --fix x|--boundary free
+--temperature 1200C --to-density 0.6 --boundary free --confine xy|--boundary free
+--temperature 1200C --to-density 0.6 --confine xy --fix yz|--fix and --confine both name y
+--temperature 1200C --to-density 0.6 --confine 2|'2' is not made of the axes
 --temperature 1200C --to-density 0.6 --checkpoint c.kiln|-o FILE
 --temperature 1200C --to-density 0.6 --resume -o o.kiln|--resume requires --checkpoint FILE
 --temperature 1200C --to-density 0.6 --checkpoint-every 5s -o o.kiln|--checkpoint-every requires --checkpoint FILE

@@ -13,16 +13,6 @@ using namespace sintering_cases;
 
 namespace {
 
-
-/// Face-centred cubic cell of touching spheres, their overlap h = 2 R s.
-State face_centred_cell(double s) {
-    const double cell = 2.0 * radius * (1.0 - s) / std::sqrt(0.5);
-    std::vector<Vec3> positions;
-    for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)})
-        positions.push_back(site * cell);
-    return state_of(positions, std::vector<double>(4, radius), Vec3::Constant(cell), true);
-}
-
 State simple_cubic(double s) {
     const double cell = 2.0 * radius * (1.0 - s);
     return state_of({{0, 0, 0}}, {radius}, Vec3::Constant(cell), true);

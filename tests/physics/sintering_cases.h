@@ -59,6 +59,15 @@ inline State sintered(State state, double time, const sintering::SinteringSettin
     return sintering.state();
 }
 
+/// Face-centred cubic cell of touching spheres, their overlap h = 2 R s.
+inline State face_centred_cell(double s) {
+    const double cell = 2.0 * radius * (1.0 - s) / std::sqrt(0.5);
+    std::vector<Vec3> positions;
+    for (const Vec3& site : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0, 0.5), Vec3(0, 0.5, 0.5)})
+        positions.push_back(site * cell);
+    return state_of(positions, std::vector<double>(4, radius), Vec3::Constant(cell), true);
+}
+
 inline double distance(const State& state, std::size_t a, std::size_t b) {
     return (state.particles.position[b] - state.particles.position[a]).norm();
 }

@@ -30,7 +30,7 @@ class Firing:
     def __init__(self, trial, tolerance=1e-4, faces=True):
         self.tolerance = tolerance
         self.options = [f"--temperature={trial.between(1100, 1300):.1f}C", f"--tolerance={tolerance}"]
-        self.fixed, self.pressure = "", (0.0, 0.0, 0.0)
+        self.fixed, self.confined, self.pressure = "", "", (0.0, 0.0, 0.0)
         kind = trial.choose("free axes", "free axes", "fixed", "loaded", "no faces") if faces else "free axes"
         self.boundary = "free" if kind == "no faces" else None
         if kind == "fixed":
@@ -44,6 +44,8 @@ class Firing:
         faces = [f"--boundary={self.boundary}"] if self.boundary else []
         if self.fixed:
             faces.append(f"--fix={self.fixed}")
+        if self.confined:
+            faces.append(f"--confine={self.confined}")
         if any(self.pressure):
             faces.append("--pressure=" + ",".join(f"{value!r}Pa" for value in self.pressure))
         return [*self.options, *faces, *wanted]
@@ -52,7 +54,8 @@ class Firing:
         """The same along other axes: new axis k is old axis axes[k]."""
         other = object.__new__(Firing)
         other.__dict__.update(self.__dict__)
-        other.fixed = "".join("xyz"[k] for k in range(3) if "xyz"[axes[k]] in self.fixed)
+        other.fixed, other.confined = ("".join("xyz"[k] for k in range(3) if "xyz"[axes[k]] in names)
+                                       for names in (self.fixed, self.confined))
         other.pressure = tuple(self.pressure[k] for k in axes)
         return other
 

@@ -1,5 +1,6 @@
 """of_sinter.py: relations of `sinter`. firings.py says what FIRST, REORDERED and SOLVED are."""
 import copy
+import json
 
 import numpy
 
@@ -7,7 +8,7 @@ from changes import carried, lengths, moved_by_boxes, renumbered, repeated, scal
 from draw import density_of
 from firings import (FIRST, REORDERED, SOLVED, STEPS, alike, drawn_firing, fired, held, stress_unit, told_at_first,
                      viscosity_unit)
-from trial import near, same, summary
+from trial import Broken, near, same, summary
 
 
 def sinter_translated(trial):
@@ -74,6 +75,38 @@ def sinter_repeated(trial):
     near("stress", here["stress"], there["stress"], SOLVED, stress_unit(there))
     near("viscosity", here["viscosity"], there["viscosity"], SOLVED, viscosity_unit(there, time))
     near("sintering stress", here["sintering_stress"], there["sintering_stress"], SOLVED, stress_unit(there))
+
+
+def sinter_in_die(trial):
+    """In a die a body is never past a wall nor pulled by one, and where it is pressed it is at the wall: in every step, to SOLVED
+    of the stresses. Turned, mirrored, repeated or enlarged it does the same (REORDERED)."""
+    connected = 0.0
+    while connected < 3.0:  # contacts a particle; in looser packings an axis that no contacts reach through hands its load on
+        state, firing, time = drawn_firing(trial, most=80, mixed=0.0, faces=False, free=False)
+        connected = held(trial, firing, state, time)["first"]["coordination_number"]
+    firing.confined = trial.choose("x", "y", "z", "xy", "yz", "xz")
+    firing.pressure = tuple(0.0 if "xyz"[k] in firing.confined else 10 ** trial.between(6, 8) for k in range(3))
+    wanted = held(trial, firing, state, time, name="green.kiln")
+    before, walls = numpy.zeros(3), ["xyz".index(axis) for axis in firing.confined]
+    for line in trial.bytes_of("history.jsonl").splitlines():
+        step = json.loads(line)
+        strain, stress = numpy.array(step["strain"]), numpy.array(step["stress"])
+        unit = max(*firing.pressure, 1e5)
+        for axis in walls:
+            if strain[axis] > 1e-12 or stress[axis] > SOLVED * unit:
+                raise Broken(f"past the wall or pulled by it: strain {strain[axis]}, stress {stress[axis]} Pa")
+            if strain[axis] < before[axis] - 1e-9 and stress[axis] < -SOLVED * unit:
+                raise Broken(f"pressed by {stress[axis]} Pa where it leaves the wall, at a strain of {strain[axis]}")
+        before = strain
+    axes, signs = trial.random.permutation(3), trial.random.choice((-1, 1), 3)
+    alike(held(trial, firing.turned(axes), turned(state, axes, signs), time), turned(wanted, axes, signs))
+    counts = numpy.roll((2, 1, 1), trial.random.integers(3))
+    found = held(trial, firing, repeated(state, counts), time)
+    near("edges", lengths(found), lengths(wanted) * counts, REORDERED)
+    firing.pressure = tuple(value / 16 for value in firing.pressure)
+    found = scaled(held(trial, firing, scaled(state, 16), time * 16**4), 1 / 16)
+    found["time"] /= 16**4
+    alike(found, wanted)
 
 
 def sinter_scaled(trial):

@@ -32,6 +32,8 @@ constexpr const char* footer =
     "  sinter --temperature 1200C --at-time 1min,5min green.kiln | analyze density --table\n"
     "  sinter --temperature 1200C --fix xy --report viscosity --to-density 0.7 -o film.kiln green.kiln\n"
     "  sinter --temperature 1200C --pressure 0MPa,0MPa,10MPa --at-time 1min -o forged.kiln green.kiln\n"
+    "  sinter --temperature 1200C --confine xy --pressure 0MPa,0MPa,30MPa --at-time 1min \\\n"
+    "      -o pressed.kiln green.kiln\n"
     "  sinter green -n 6000 --distribution lognormal:100nm:1.3 --material alumina-dihedral |\n"
     "      sinter --temperature 1350C --coarsening surface,boundary --to-density 0.7 -o grown.kiln\n"
     "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln \\\n"
@@ -89,6 +91,10 @@ void Options::add_boundaries(CLI::App& app) {
         ->default_str("as the state says");
     app.add_option("--fix", fixed, "Axes along which the box keeps its length, such as xy for a film on a substrate")
         ->type_name("AXES");
+    app.add_option("--confine", confined,
+                   "Axes along which the box stands in a die that it fills at the start: its walls hold the body and do not pull "
+                   "it, such as xy beside --pressure 0MPa,0MPa,30MPa")
+        ->type_name("AXES");
     add_quantities(app, "--pressure", pressure, Dimension::pressure,
                    "Pressure on the periodic faces, one for all or three for x,y,z; compression counts positive");
 }
@@ -143,12 +149,16 @@ void Options::check(const CLI::App& app, const std::string& output) {
         if (!(time >= 0.0)) throw CLI::ValidationError("--at-time: a time is not negative");
     if (!(every >= 0.0)) throw CLI::ValidationError("--every: a span of time is not negative");
     check_list({tolerance}, 0.0, 1.0, "--tolerance");
-    cli::axes_from("--fix", fixed);
+    const std::array<bool, 3> still = cli::axes_from("--fix", fixed), die = cli::axes_from("--confine", confined);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (still[axis] && die[axis])
+            throw CLI::ValidationError(std::string("--fix and --confine both name ") + "xyz"[axis] +
+                                       ": a face is held, or held without being pulled");
     if (!(pressure.empty() || pressure.size() == 1 || pressure.size() == 3))
         throw CLI::ValidationError("--pressure: one value or three are required, for x,y,z");
-    if (faces == sintering::Faces::free && (!fixed.empty() || !pressure.empty()))
+    if (faces == sintering::Faces::free && (!fixed.empty() || !confined.empty() || !pressure.empty()))
         throw CLI::ValidationError(
-            "--fix and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
+            "--fix, --confine and --pressure hold or load the faces of a periodic box; with --boundary free there are none");
     if (!checkpoint.empty() && output == "-") throw CLI::ValidationError("--checkpoint requires an output file: -o FILE");
     if (resume && checkpoint.empty()) throw CLI::ValidationError("--resume requires --checkpoint FILE");
     refuse_unused(app);
@@ -187,6 +197,7 @@ sintering::SinteringSettings Options::settings(double start) const {
     settings.constants = constants;
     settings.faces = faces;
     settings.fixed = cli::axes_from("--fix", fixed);
+    settings.confined = cli::axes_from("--confine", confined);
     for (std::size_t axis = 0; axis < 3 && !pressure.empty(); ++axis)
         settings.pressure[static_cast<Eigen::Index>(axis)] = pressure[pressure.size() == 1 ? 0 : axis];
     settings.tolerance = tolerance;

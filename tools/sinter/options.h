@@ -28,7 +28,7 @@ struct Options {
     std::string schedule;           // words, or a furnace's log by its name
     io::LogColumns log;             // which of its columns
     sintering::Faces faces = sintering::Faces::as_given;
-    std::string fixed;              // axes
+    std::string fixed, confined;    // axes
     std::vector<double> pressure;   // Pa, one or three
     SinterMethod method = SinterMethod::implicit;
     double mass_scaling = 1e20;
