@@ -5,6 +5,7 @@ load helper.bash
 
 # Green bodies of the documentation have this many particles here, so that a page takes seconds.
 : "${DOC_PARTICLES:=400}"
+: "${STUDY_PARTICLES:=60}" # of each packing of a study
 
 # A folder that looks like the source from within, but for what the commands write, and the programs under their names.
 setup() {
@@ -25,9 +26,9 @@ run_page() {
     {
         printf '%s\n' 'set -euo pipefail' "export PATH=$PWD/build/bin:\$PATH" \
             'make() { if [[ ${1-} == -C ]]; then command make "$@"; else command make -n BUILD="$REAL_BUILD" "$@" >/dev/null; fi; }'
-        fenced sh "$1" | sed -E "s/green -n [0-9]+/green -n $DOC_PARTICLES/"
+        fenced sh "$1" | sed -E "s/green -n [0-9]+/green -n $DOC_PARTICLES/; s/^particles = .*/particles = $STUDY_PARTICLES/; s/^seeds = .*/seeds = 1/"
     } >page.sh
-    REAL_BUILD="${BUILD:-$ROOT/build}" BIN="$PWD/build/bin" run -0 bash page.sh
+    REAL_BUILD="${BUILD:-$ROOT/build}" BIN="$PWD/build/bin" FORMATS=svg run -0 bash page.sh
     refute_output --regexp "\bnan\b"
 }
 
@@ -83,6 +84,13 @@ END
     run_page docs/materials.md
     assert_output --partial "is surface_energy meant?"
     assert_output --regexp "zirconia-3y +6050 "
+}
+
+@test "a study of one's own: a report, the same beside measurements, and cases" {
+    run_page docs/study.md
+    [ -s my-powder/results/report.html ]
+    assert_output --partial "dL/L0 less that of the dilatometer"
+    [ -s sizes-results/figures/comparison.svg ]
 }
 
 @test "no page has commands that are not run here" {
