@@ -20,6 +20,8 @@ BONDIFY ?= $(BIN)/bondify
 BEND    ?= $(BIN)/bend
 ANALYZE ?= $(BIN)/analyze
 MEASURE  = @$(PYTHON) $(POST)/measure.py
+# The same in the folder of a case file, whose paths are those of that folder: $(call measure_in,FOLDER).
+measure_in = @cd $(1) && $(PYTHON) $(POST)/measure.py
 
 ifneq ($(OUT),$(abspath $(OUT)))
 $(error OUT=$(OUT) is not an absolute path; try OUT=$$PWD/$(OUT))

@@ -60,6 +60,23 @@ ensemble() { make -C "$ROOT/workflows/ensemble" PACKINGS="$PWD/packings" TEMPERA
     assert_output --partial "there are no case files *.toml in $PWD/none"
 }
 
+@test "paths in a case file are those of its folder; packings that differ in more than their seed are no replicates" {
+    cd "$BATS_TEST_TMPDIR"
+    mkdir packings temperatures
+    printf 'Size (nm),Number\n90,10\n110,10\n' >packings/sizes.csv
+    printf 'particles = 60\ncompact-to = 0.6\ndistribution = "file:sizes.csv"\nseed = 1\n' >packings/1.toml
+    printf 'time (min),temperature (C)\n0,1100\n1,1100\n' >temperatures/furnace.csv
+    printf 'schedule = "furnace.csv"\n' >temperatures/log.toml
+    ensemble "$PWD/made/1/log/sintered.kiln"
+    run -0 jq '.time' <("$ANALYZE" info made/1/log/sintered.kiln)
+    assert_output 60
+    sed -e 's/seed = 1/seed = 2/' packings/1.toml >packings/2.toml
+    ensemble -n >/dev/null
+    sed -i 's/0.6/0.61/' packings/2.toml
+    run -2 ensemble
+    assert_output --partial "differ in more than their seed, so they are no replicates; workflows/study keeps cases apart"
+}
+
 @test "Snakemake has the same rules and makes the same numbers, on two cores" {
     type -P snakemake >/dev/null || skip "there is no snakemake"
     local options=(-s "$ROOT/workflows/ensemble/Snakefile" --config out="$PWD/snake" packings="$PWD/packings" temperatures="$PWD/temperatures"
