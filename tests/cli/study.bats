@@ -156,6 +156,19 @@ END
     assert_line --partial "there is no powder.toml in nowhere"
 }
 
+@test "what may stand in the tables are options of the programs that they go to" {
+    "$PYTHON" -B -c 'import sys
+sys.path.insert(0, sys.argv[1])
+import study_plan
+own = {"material", "densities", "bend", "necks", "conductivity", "boundary-resistance"}
+for name in ("POWDER", "FIRING", "TEST"):
+    print(name, *("--" + key for key in getattr(study_plan, name) if key not in own))' "$ROOT/workflows/post" >"$BATS_TEST_TMPDIR/keys"
+    for pair in "POWDER $SINTER green" "FIRING $SINTER" "TEST $BEND"; do
+        help=$(${pair#* } --help)
+        for key in $(sed -n "s/^${pair%% *} //p" "$BATS_TEST_TMPDIR/keys"); do grep -q -- "$key " <<<"$help" || fail "${pair#* } has no $key"; done
+    done
+}
+
 @test "the examples are plans that can be begun" {
     for name in nickel zirconia sizes; do
         "$PYTHON" -B "$ROOT/workflows/post/study_plan.py" "$ROOT/workflows/study/$name/powder.toml" "$BATS_TEST_TMPDIR/$name" --analyze "$ANALYZE"

@@ -41,7 +41,8 @@ def curves(axes, cases, colours, x, y, name=True):
     """Every packing as a line; x, y: functions of a curve."""
     for case, colour in zip(cases, colours):
         for k, each in enumerate(case["curves"]):
-            axes.plot(x(each), y(each), color=colour, linewidth=1.2, alpha=0.85, label=case["name"] if name and k == 0 else None)
+            label = (case["name"] if len(cases) > 1 else "simulated") if name and k == 0 else None
+            axes.plot(x(each), y(each), color=colour, linewidth=1.2, alpha=0.85, label=label)
 
 
 def array(key, factor=1.0, shift=0.0):

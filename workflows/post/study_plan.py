@@ -22,7 +22,7 @@ ROOM = 0.02  # relative density by which the first of them has to lie above the 
 POWDER = ("material", "density", "diameter", "distribution", "sizes-by", "shares", "columns", "length-unit", "method", "compact-to",
           "swell", "damping", "mean-overlap", "aspect")
 FIRING = ("temperature", "schedule", "time-column", "temperature-column", "densities", "coarsening", "chi", "neck-share",
-          "neck-growth", "fix", "pressure", "tolerance", "alpha", "beta", "eta")
+          "neck-growth", "fix", "confine", "pressure", "tolerance", "alpha", "beta", "eta")
 TEST = ("bend", "span", "punch-radius", "max-deflection", "max-force", "cycles", "friction", "tensile-strength", "shear-strength",
         "bond-law", "conductivity", "boundary-resistance", "necks")
 MEASURED = ("dilatometer", "moduli", "strengths", "span", "width", "height")
