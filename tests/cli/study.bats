@@ -149,9 +149,13 @@ END
     refuse "'5K' of the schedule '25C 5K 425C' is not understood" <<<"${good/5K\/min/5K}"
     refuse "\[vary\] size: write SIZE in the distribution" <<<"${good/nickel\"/nickel\"$'\n'distribution = \"lognormal:1um:1.3\"}"$'[vary]\nsize = ["1um"]'
     refuse "names the file curve.csv, which is not in" <<<"$good"$'[measured]\ndilatometer = "curve.csv"'
+    printf 'Temp;dL\n1;2\n' >bad/curve.csv
+    refuse ".*curve.csv: a dilatometer's curve has a column 'temperature \(C\)' and one of 'dL/L0" <<<"$good"$'[measured]\ndilatometer = "curve.csv"'
     refuse "is not TOML: " <<<"${good/=/:}"
     run -2 study
     assert_line --partial "say which study: make -C workflows/study STUDY=FOLDER"
+    run -2 study STUDY="two words"
+    assert_line --partial "'two words' has a blank in it"
     run -2 study STUDY=nowhere
     assert_line --partial "there is no powder.toml in nowhere"
 }

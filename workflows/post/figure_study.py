@@ -52,8 +52,8 @@ def array(key, factor=1.0, shift=0.0):
 def shade_beyond(axes, cases):
     """Marks where the model says little."""
     top = max((row["relative_density"]["mean"] for case in cases for row in case["states"]), default=0)
-    if top > BEYOND:
-        right = axes.get_xlim()[1]
+    right = axes.get_xlim()[1]
+    if top > BEYOND and right > BEYOND:
         axes.axvspan(BEYOND, right, color=style.REFERENCE, alpha=0.12, linewidth=0, zorder=0)
         axes.annotate("pores closed", (BEYOND, 0.02), (3, 0), xycoords=("data", "axes fraction"), textcoords="offset points",
                       rotation=90, va="bottom", fontsize="x-small", color=style.REFERENCE)

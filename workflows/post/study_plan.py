@@ -14,7 +14,9 @@ import sys
 import tomllib
 
 import schedules
+import study_results
 import units
+from convert_common import ConvertError
 
 STEPS = (0.6, 0.7, 0.8, 0.9)  # relative densities of the states of a firing, where the file names none
 ROOM = 0.02  # relative density by which the first of them has to lie above the green body
@@ -27,7 +29,7 @@ TEST = ("bend", "span", "punch-radius", "max-deflection", "max-force", "cycles",
         "bond-law", "conductivity", "boundary-resistance", "necks")
 MEASURED = ("dilatometer", "moduli", "strengths", "span", "width", "height")
 VARY = ("size", "temperature", "material", "density", "schedule", "seeds")
-TOP = ("title", "particles", "seed", "powder", "firing", "test", "measured", "vary")
+TOP = ("title", "particles", "seed", "seeds", "powder", "firing", "test", "measured", "vary")
 VARIED = {"size": "size", "temperature": "temperature", "material": "material", "density": "green density", "schedule": "firing"}
 SIZE = re.compile(r"\bSIZE\b")
 
@@ -79,7 +81,7 @@ class Study:
         self.test = known(said.get("test", {}), TEST, "[test]")
         self.measured = known(said.get("measured", {}), MEASURED, "[measured]")
         self.vary = known(said.get("vary", {}), VARY, "[vary]")
-        self.seeds = self.vary.pop("seeds", 1)
+        self.seeds = self.vary.pop("seeds", said.get("seeds", 1))
         if isinstance(self.seeds, int):
             self.seeds = list(range(said.get("seed", 1), said.get("seed", 1) + self.seeds))
         listed(self.seeds, "[vary] seeds, a number or a list of them,")
@@ -110,6 +112,10 @@ class Study:
         for key in ("dilatometer", "moduli", "strengths"):
             if key in self.measured:
                 self.measured[key] = self.file(self.measured[key])
+        try:
+            study_results.measured_of(self.measured)
+        except ConvertError as error:
+            raise PlanError(str(error)) from None
 
     def material(self, name, output):
         """What --material gets: a built-in name, or a file; a table with `from` becomes a file."""
@@ -239,7 +245,7 @@ def fingerprints(options):
 
 def quoted(words):
     """Words for a recipe of make."""
-    return " ".join(shlex.quote(word) for word in words).replace("$", "$$")
+    return " ".join(shlex.quote(word) for word in words).replace("$", "$$").replace("#", "\\#")
 
 
 def options_of(table, names):

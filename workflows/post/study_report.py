@@ -120,7 +120,7 @@ def page(run, study):
 relative density that was asked for, or "end".</p>{sections}{measured}
 {remarks(study)}
 <h2>How it was made</h2>{commands}
-<section class="files"><h2>Files</h2>{report.files(run)}</section>
+<section class="files"><h2>Files</h2><details><summary>all of them</summary>{report.files(run)}</details></section>
 </body></html>
 """
 

@@ -70,6 +70,15 @@ def label_of(density, asked, last):
     return f"{near[0]:g}" if near else "end" if last else f"{density:.3f}"
 
 
+def said_in(path):
+    """The sentences of a stage without the files that they name, and whether it failed."""
+    kind = "warning" if path.with_suffix("").stat().st_size else "failed"
+    for line in path.read_text(encoding="utf-8").splitlines():
+        sentence = re.sub(r"\S+\.(?:kiln|jsonl?)(?:, document \d+)?: ", "", line.replace("warning: ", "")).strip()
+        if sentence:
+            yield kind, sentence
+
+
 class Body:
     """One packing of a case, fired and tested."""
 
@@ -116,12 +125,9 @@ class Body:
         """Sentences of the stages, warnings and errors, without the paths of this run; and whether a stage failed."""
         yield from (("warning", sentence) for sentence in self.doubts)
         for path in sorted((self.run / self.name).glob("*.said")):
-            failed = not path.with_suffix("").stat().st_size
-            for line in path.read_text(encoding="utf-8").splitlines():
-                sentence = line.replace(f"{self.run}/{self.name}/", "")
-                sentence = re.sub(r"\S+\.(?:kiln|jsonl?)(?:, document \d+)?: (?:warning: )?", "", sentence.replace("warning: ", ""))
-                if sentence.strip() and not any(word in sentence for word in noise):
-                    yield ("failed" if failed else "warning"), sentence.strip()
+            for kind, sentence in said_in(path):
+                if not any(word in sentence for word in noise):
+                    yield kind, sentence
 
 
 def summarized(bodies, analyze):
@@ -168,21 +174,18 @@ def dilatometer(path):
     return found
 
 
-def measured_of(plan, run):
-    """What was measured, read."""
+def measured_of(files):
+    """What stands in the tables of a dilatometer and of moduli."""
     found = {}
-    if "dilatometer" in plan["measured"]:
-        found["dilatometer"] = dilatometer(plan["measured"]["dilatometer"])
-    if "moduli" in plan["measured"]:
-        table = Table(plan["measured"]["moduli"], wanted=("young_modulus",))
+    if "dilatometer" in files:
+        found["dilatometer"] = dilatometer(files["dilatometer"])
+    if "moduli" in files:
+        table = Table(files["moduli"], wanted=("young_modulus",))
         density = column_of(table, DENSITY)
         if density is None:
-            raise ConvertError(f"{plan['measured']['moduli']}: has no column relative_density")
+            raise ConvertError(f"{files['moduli']}: has no column relative_density")
         found["moduli"] = [{"relative_density": x, "young_modulus": y}
                            for x, y in zip(table.values(density).tolist(), table.values("young_modulus").tolist())]
-    strengths = run / "measured_strength.json"
-    if strengths.is_file() and strengths.stat().st_size:
-        found["strengths"] = dict(kiln.read(strengths)[0])
     return found
 
 
@@ -317,6 +320,10 @@ def remarks_of(bodies, plan):
             entry = found.setdefault((kind, plain), {"kind": kind, "sentence": sentence, "bodies": []})
             if body.name not in entry["bodies"]:
                 entry["bodies"].append(body.name)
+    measured = bodies[0].run / "measured_strength.json.said"
+    if "strengths" in plan["measured"] and measured.is_file():
+        for kind, sentence in said_in(measured):
+            found[kind, sentence] = {"kind": kind, "sentence": sentence, "bodies": ["measured strengths"]}
     return sorted(found.values(), key=lambda each: each["kind"])
 
 
@@ -331,7 +338,10 @@ def results(run, analyze):
         own = [body for body in bodies if body.name in case["bodies"]]
         curves = [{"seed": body.seed, **{key: values.tolist() for key, values in body.curve.items()}} for body in own if body.curve]
         cases.append({**case, "states": summarized(own, analyze), "curves": curves})
-    measured = measured_of(plan, run)
+    measured = measured_of(plan["measured"])
+    strengths = kiln.read(run / "measured_strength.json") if "strengths" in plan["measured"] else []
+    if strengths:
+        measured["strengths"] = dict(strengths[0])
     compared(cases, measured)
     write_tables(run, bodies, cases)
     return {"title": plan["title"], "particles": plan["particles"], "seeds": plan["seeds"], "cases": cases, "measured": measured,
