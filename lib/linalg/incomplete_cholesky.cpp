@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kiln::linalg {
@@ -17,16 +18,22 @@ constexpr std::size_t long_row = 64;  // blocks, from which bisection is quicker
 
 }  // namespace
 
-Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, double trace, double floor) {
-    const double least = floor * trace;
+Eigen::Matrix3d pivot_inverse(const Eigen::Matrix3d& pivot, const Eigen::Matrix3d& before, double floor) {
+    const double least = floor * before.trace();
     const double first = pivot(0, 0), second = pivot(1, 1) - pivot(1, 0) * pivot(1, 0) / first;  // D of its L D L^T
     const double rest = pivot(2, 1) - pivot(2, 0) * pivot(1, 0) / first;
     const double third = pivot(2, 2) - pivot(2, 0) * pivot(2, 0) / first - rest * rest / second;
     if (first > least && second > least && third > least) return pivot.inverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(pivot);
-    const Vec3& values = modes.eigenvalues();
-    const Vec3 inverse = (values.array() > least).select(values.cwiseInverse(), 0.0);
-    return modes.eigenvectors() * inverse.asDiagonal() * modes.eigenvectors().transpose();
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+    for (Eigen::Index mode = 0; mode < 3; ++mode) {
+        const Vec3 along = modes.eigenvectors().col(mode);
+        double stiffness = modes.eigenvalues()[mode];
+        if (std::abs(stiffness) <= least) continue;
+        if (stiffness < 0.0) stiffness = along.dot(before * along);
+        inverse += along * along.transpose() / stiffness;
+    }
+    return inverse;
 }
 
 template <typename Real>
@@ -91,7 +98,7 @@ void IncompleteCholesky<Real>::eliminate(const NodeRange& range) {
     // D_j = A_jj - sum_i L_ji U_ji^T.
     std::vector<Eigen::Matrix3d> upper;  // U of row j
     for (std::size_t row = range.first_node; row < range.last_node; ++row) {
-        const double trace = diagonal_[row].trace();
+        const Eigen::Matrix3d before = diagonal_[row];
         const std::size_t begin = row_begin_[row], end = row_begin_[row + 1];
         upper.resize(end - begin);
         for (std::size_t place = begin; place < end; ++place) {
@@ -104,7 +111,7 @@ void IncompleteCholesky<Real>::eliminate(const NodeRange& range) {
             block(lower_, place) = (u * block(inverse_, i).template cast<double>()).template cast<Real>();
             diagonal_[row] -= block(lower_, place).template cast<double>() * u.transpose();
         }
-        block(inverse_, row) = pivot_inverse(diagonal_[row], trace, min_pivot<Real>).template cast<Real>();
+        block(inverse_, row) = pivot_inverse(diagonal_[row], before, min_pivot<Real>).template cast<Real>();
     }
 }
 
