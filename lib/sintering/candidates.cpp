@@ -14,7 +14,8 @@ namespace {
 
 constexpr double min_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
 constexpr double guess_margin = 2.0;   // of the approach that is guessed, that makes a candidate
-constexpr double limit_stiffness = 100.0;  // of the spring at a limit, over the stiffness of the contact there
+constexpr double limit_stiffness = 100.0;  // of the spring at a limit, over the stiffness of the contact there: it
+                                           // yields by a part in a hundred of what the contact would do without
 constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
 
 }  // namespace
@@ -46,10 +47,10 @@ PairStep Candidates::pair_step(const Pair& pair, const std::vector<double>& diff
     }
     const double most = physics::overlap_of_neck(max_neck(kind, first, second), step.reduced_radius);
     step.limit = std::max(0.0, most - step.overlap);
-    // Of grains that differ a lot, the stiffness of a contact may be hundreds of times that of most. At the limit it yields by a
-    // part in a hundred of what it would do without: coarsening moves necks by far more.
-    if (coarsens_) step.spring = limit_stiffness * unit * physics::normal_viscosity_factor(constants_, step.reduced_radius) /
-                                 diffusion[kind] * physics::viscosity_shape(std::max(most, step.overlap));
+    // Of grains that differ a lot, the stiffness of a contact may be hundreds of times that of most: its limit has its own spring.
+    if (std::isfinite(most))
+        step.spring = limit_stiffness * unit * physics::normal_viscosity_factor(constants_, step.reduced_radius) /
+                      diffusion[kind] * physics::viscosity_shape(std::max(most, step.overlap));
     step.slowness = *std::ranges::max_element(diffusion) / diffusion[kind];
     step.force = unit * physics::sintering_force(constants_, step.reduced_radius, kinetics_.surface_energy(kind));
     step.cubic = unit * physics::normal_viscosity_factor(constants_, step.reduced_radius) / diffusion[kind];

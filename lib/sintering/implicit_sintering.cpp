@@ -33,6 +33,7 @@ constexpr double same_time = 1e-12;         // relative: the rounding of the tim
 constexpr std::size_t max_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
+constexpr int limit_corrections = 4;         // of springs at neck limits, each of which takes off most of what is left
 constexpr double landing_closeness = 2e-3;  // of a step's change of density, within which scaling its motion is exact enough
 constexpr int max_landings = 40;           // attempts to end a step at a required density
 constexpr int max_rejections = 20;         // of one step
@@ -160,6 +161,8 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
                                 .first_tolerance = closely * (settings_.second_order ? predictor_fraction : first_order_fraction),
                                 .second_tolerance = closely,
                                 .balance_first = !settings_.second_order,
+                                // Coarsening moves the limits themselves by far more than the springs yield.
+                                .limit_corrections = coarsening_ ? 0 : limit_corrections,
                                 .stop = settings_.stop};
     Problem problem{diffusion, clusters, settings, die_of(clusters.locked()), std::nullopt};
     hold(problem);

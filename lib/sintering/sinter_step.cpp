@@ -20,13 +20,15 @@ constexpr double overshoot = 0.5;  // slope left at the end of a Newton step, re
 constexpr double min_tangent = 0.1;        // of the tangent at a pair's own end of the step
 constexpr double max_linear = 0.1;         // error of the linear solves, loosest and tightest
 constexpr double min_linear = 1e-3;
+constexpr double surprise = 4.0;   // error over what the iteration before foretold, from which linear solves are held to have ended
+constexpr double closer = 0.1;     // too early: the next ones go closer by this factor
 constexpr int max_factorisations = 2;      // in one minimisation; later the tangents hardly change
 constexpr double linear_fraction = 0.5;    // of the tolerance, that is left to linear solves
 constexpr double imbalance_factor = 30.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
 constexpr double min_single = 1e-3;        // a tenth of it is typical; within these bounds
 constexpr double max_single = 0.5;
 constexpr double sharpening = 0.1;         // of what linear solves may leave, where that still unbalances a particle
-constexpr double limit_stiffness = 10.0;   // of the springs at limits of approach, over the mean tangent of the contacts
+constexpr double limit_stiffness = 10.0;   // of the springs at limits of rigid particles, over the mean tangent of the contacts
 constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a limit of approach is met
 constexpr int max_limit_passes = 60;
 constexpr double coarse_contrast = 30.0;   // of diffusion, that makes a coarse space pay
@@ -176,8 +178,10 @@ void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool 
                                     : min_tangent * physics::viscosity_shape(pair.isolated_end);
         const auto row = static_cast<std::size_t>(network_.pair[entry]);
         const double limit = limits_.any() ? limits_.reaction(row, -along) : 0.0;
-        const double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.isolated_end ? least : 0.0);
-        solver.stiffness().set(entry, tangent + (limit > 0.0 ? limits_.stiffness(row) : 0.0), pair.tangential);
+        double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.isolated_end ? least : 0.0);
+        if (limit > 0.0) tangent += limits_.tangent(row, -along, pair.driving - resistance);
+        else if (limits_.any()) tangent = std::max(tangent, limits_.tangent(row, -along, pair.driving - resistance));
+        solver.stiffness().set(entry, tangent, pair.tangential);
         return (pair.driving - resistance - limit - pair.tangential * along) * pair.normal +
                pair.tangential * du;
     });
@@ -242,6 +246,7 @@ double SinterStep::line_search(double slope, Motion& motion) {
 bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepReport& report) {
     const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
     double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
+    double closeness = 1.0, foretold = HUGE_VAL;
     forces(motion, true);
     for (int iteration = 0; iteration < max_newton; ++iteration) {
         unbalanced_.strain *= -1.0;
@@ -252,7 +257,7 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
             return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
                 throw_if_stopped(settings_.stop);
                 const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
-                const double goal = std::clamp(size, min_linear, max_linear);
+                const double goal = std::clamp(closeness * size, min_linear, max_linear);
                 return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||
                        progress.iterations >= max_conjugate_gradients;
             });
@@ -268,6 +273,8 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
             const double length = line_search(slope, motion);
             error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
             now = length < 1.0 ? error : (linear.relative_error() + error) * error;
+            if (error > surprise * foretold) closeness *= closer;
+            foretold = now;
             if (length < 0.5 && error < rounding) now = 0.0;
         } else {
             unbalanced_.strain *= -1.0;
@@ -288,7 +295,10 @@ bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepRe
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
             [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
-            [&](std::size_t row) { return step_[row].spring > 0.0 ? HUGE_VAL : limit_accuracy * step_[row].reduced_radius; });
+            [&](std::size_t row) {
+                const bool may_yield = step_[row].spring > 0.0 && pass >= settings_.limit_corrections;
+                return may_yield ? HUGE_VAL : limit_accuracy * step_[row].reduced_radius;
+            });
         if (missed <= 1.0) break;
         if (pass == max_limit_passes) return false;
         converged = newton(tolerance, balance, motion, report);

@@ -32,7 +32,7 @@ struct PairStep {
     double cubic;            // K/I, force/m3
     double shear;            // tangential viscosity over h and I, force/m2
     double limit;            // largest approach, m; infinity for none
-    double spring;           // stiffness of the spring that is the limit, force/m; zero for one that is met exactly
+    double spring;           // stiffness of the spring at the limit, force/m; zero where the limit is met to rounding
     double slowness;         // integral of Delta over the step of the fastest pair over that of this one; zero where none diffuses
 };
 
@@ -42,6 +42,7 @@ struct StepSettings {
     Vec3 pressure = Vec3::Zero();                     // force/m2, compressive, along the free axes
     double first_tolerance = 1e-3, second_tolerance = 1e-3;  // relative errors of the motions of both orders in the energy norm
     bool balance_first = true;  // judge the motion of first order particle by particle; not needed where it only predicts
+    int limit_corrections = 0;  // passes that take off by how much springs at limits yield, unless they soon yield nothing
     StopRequest stop;                                 // asked between iterations; the step then throws Interrupted
 };
 

@@ -29,10 +29,18 @@ class UnilateralConstraints {
     }
 
     bool any() const { return !rows_.empty(); }
-    double stiffness(std::size_t row) const { return stiffness_[row]; }
 
     /// True where the limit carried a force at the last update.
     bool holds(std::size_t row) const { return multiplier_[row] > 0.0; }
+
+    /// Stiffness against further approach under a force that nothing but the limit holds: beyond the limit the spring's. Before it
+    /// the secant towards where the spring would hold that force: with none there, Newton would leap into the spring and back.
+    double tangent(std::size_t row, double approach, double force) const {
+        if (std::isinf(limit_[row])) return 0.0;
+        if (reaction(row, approach) > 0.0) return stiffness_[row];
+        const double held = limit_[row] + (force - multiplier_[row]) / stiffness_[row];
+        return held > approach ? force / (held - approach) : 0.0;
+    }
 
     double reaction(std::size_t row, double approach) const {
         return std::isinf(limit_[row]) ? 0.0 : std::max(0.0, multiplier_[row] + stiffness_[row] * (approach - limit_[row]));

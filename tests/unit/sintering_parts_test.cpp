@@ -166,6 +166,18 @@ TEST_CASE("candidates: pairs that touch, pairs that a motion brings to touch, an
     CHECK(candidates.max_isolated_approach(diffusion) < 1.01 * exact);
 }
 
+TEST_CASE("before a limit Newton sees the secant towards where its spring holds the force, beyond it the spring") {
+    UnilateralConstraints limits;
+    limits.reset(2);
+    limits.add(1, 0.3, 0.0, 100.0);
+    CHECK(limits.tangent(0, 0.0, 5.0) == 0.0);
+    CHECK(limits.tangent(1, 0.31, 5.0) == 100.0);
+    CHECK(std::abs(limits.tangent(1, 0.25, 5.0) - 5.0 / (0.35 - 0.25)) < 1e-12);  // 5/100 beyond the limit
+    CHECK(limits.tangent(1, 0.25, -7.0) == 0.0);  // pulled away from it
+    limits.add(1, 0.3, 4.0, 100.0);
+    CHECK(std::abs(limits.tangent(1, 0.25, 5.0) - 5.0 / (0.31 - 0.25)) < 1e-12);
+}
+
 TEST_CASE("a limit of approach is met exactly by a spring of ordinary stiffness, and lets go when it is pulled") {
     UnilateralConstraints limits;
     limits.reset(2);
@@ -176,7 +188,7 @@ TEST_CASE("a limit of approach is met exactly by a spring of ordinary stiffness,
     for (double missed = 2.0; missed > 1.0 && passes < 100; ++passes) {
         for (int newton = 0; newton < 20; ++newton) {
             const double reaction = limits.reaction(1, approach);
-            approach += (push - approach - reaction) / (1.0 + (reaction > 0.0 ? limits.stiffness(1) : 0.0));
+            approach += (push - approach - reaction) / (1.0 + limits.tangent(1, approach, push - approach));
         }
         missed = limits.update([&](std::size_t) { return approach; }, [](std::size_t) { return 1e-10; });
     }
