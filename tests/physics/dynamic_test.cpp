@@ -74,7 +74,7 @@ TEST_CASE("the dynamic slope comes to the static one as the punch slows down; wo
 }
 
 TEST_CASE("a punch too fast for the bar to stay in balance is named, and so is what damping took") {
-    const State state = test::make_lattice({.cells = {14, 3, 3}});
+    const State state = test::make_lattice({.cells = {16, 3, 3}});
     Options options = dynamic_options();
     const Result usual = bend_dynamic(state, options);
     CHECK(usual.warnings.empty());
