@@ -91,6 +91,7 @@ END
     [ -s my-powder/results/report.html ]
     assert_output --partial "dL/L0 less that of the dilatometer"
     [ -s sizes-results/figures/comparison.svg ]
+    assert_line --regexp "^Calibrated on the dilatometer: .* Q [0-9.]+ kJ/mol"
 }
 
 @test "no page has commands that are not run here" {

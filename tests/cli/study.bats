@@ -110,6 +110,44 @@ END
         "$(awk -v k="$before" 'BEGIN { print k / 2 }')" 1e-5
 }
 
+@test "a dilatometer calibrates the diffusion: a powder's own curve gives back the constants that it was made with" {
+    cd "$BATS_TEST_TMPDIR"
+    mkdir powder
+    { echo 'temperature (C),dL/L0 (%)'
+      paste -d, <(column "$BATS_FILE_TMPDIR/mine/results/curves.csv" "temperature (C)" "r['seed'] == '1'") \
+          <(column "$BATS_FILE_TMPDIR/mine/results/curves.csv" "dL/L0 (%)" "r['seed'] == '1'"); } >powder/curve.csv
+    # Of nickel without its diffusion, on the packing that made the curve.
+    cat >powder/powder.toml <<'END'
+particles = 120
+[powder]
+material = "nickel.json"
+distribution = "file:psd.csv"
+density = 0.45
+[firing]
+calibrate = true
+schedule = "25C 5K/min 395C"
+densities = [0.6]
+[measured]
+dilatometer = ["curve.csv:5K/min"]
+END
+    cp "$BATS_FILE_TMPDIR/mine/psd.csv" powder
+    "$ANALYZE" materials nickel | jq '.material | del(.grain_boundary_diffusion)' >powder/nickel.json
+    run -0 study STUDY=powder text
+    assert_line --regexp "Calibrated on the dilatometer: delta D_0b .* kJ/mol; relative densities of curve within 0.00[0-4]$"
+    assert_line --regexp "dL/L0 less that of the dilatometer at the same temperature: 0.00[0-2] in the mean square"
+    near "$(jq .grain_boundary_diffusion.activation_energy powder/results/calibration/material.json)" 115e3 0.02
+    near "$(jq .cases[0].states[0].time.mean powder/results/study.json)" \
+        "$(column "$BATS_FILE_TMPDIR/mine/results/states.csv" "time (min)" "r['state'] == '0.6' and r['seed'] == '1'" | awk '{ print 60 * $1 }')" 0.01
+    # Another heating rate is not compared.
+    sed -i 's/5K\/min 395C/20K\/min 395C/' powder/powder.toml
+    run -0 study STUDY=powder text
+    refute_output --partial "less that of the dilatometer"
+    assert_line --partial "Calibrated on the dilatometer"
+    { cat powder/powder.toml; printf '[vary]\ndensity = [0.45, 0.5]\n'; } >powder/other.toml
+    run -2 study STUDY=powder/other.toml
+    assert_line --regexp "\[firing\] calibrate is of one powder, and \[vary\] density makes several"
+}
+
 @test "sizes x densities x seeds: a case that fails or gets dense is reported and stops no other; replicates only within a case" {
     run -0 study STUDY=factorial.toml -j2 FORMATS='svg pdf'
     assert_line --regexp "^200nm-0.45$"
@@ -164,7 +202,7 @@ END
     "$PYTHON" -B -c 'import sys
 sys.path.insert(0, sys.argv[1])
 import study_plan
-own = {"material", "densities", "bend", "necks", "conductivity", "boundary-resistance"}
+own = {"material", "densities", "calibrate", "bend", "necks", "conductivity", "boundary-resistance"}
 for name in ("POWDER", "FIRING", "TEST"):
     print(name, *("--" + key for key in getattr(study_plan, name) if key not in own))' "$ROOT/workflows/post" >"$BATS_TEST_TMPDIR/keys"
     for pair in "POWDER $SINTER green" "FIRING $SINTER" "TEST $BEND"; do

@@ -8,7 +8,7 @@ import sys
 
 import measure
 
-OUTPUTS = ("-o", "--output", "--history", "--states")
+OUTPUTS = ("-o", "--output", "--history", "--states", "--save-material")
 PASSED_ON = (126, 127, 130, 143)  # the stage is not there, or was stopped: that is no result
 
 

@@ -65,7 +65,7 @@ def legend(axes, cases):
         axes.legend(fontsize="small" if len(cases) <= 4 else "xx-small", loc="best")
 
 
-def densification(cases, measured, colours):
+def densification(cases, _, colours):
     """Density, its rate and the shrinkage against time and temperature."""
     heated = any(numpy.ptp(curve["temperature"]) > 1 for case in cases for curve in case["curves"])
     figure, ((first, second), (third, fourth)) = pyplot.subplots(2, 2, figsize=(7.2, 5.6))
@@ -93,12 +93,12 @@ def densification(cases, measured, colours):
     across, word = (celsius, "Temperature, °C") if heated else (minutes, "Time, min")
     curves(fourth, cases, colours, across, shrinkage)
     fourth.set(xlabel=word, ylabel="dL/L$_0$, %")
-    dilatometer = measured.get("dilatometer")
-    if dilatometer and heated:
+    curve = next((case["dilatometer"] for case in cases if "dilatometer" in case), None)
+    if curve and heated:
         for axes, key, factor in ((second, "relative_density", 1.0), (fourth, "shrinkage", 100.0)):
-            if key in dilatometer:
-                axes.plot(dilatometer["temperature"], numpy.array(dilatometer[key]) * factor, "o", color="black", markersize=3,
-                          label="measured")
+            if key in curve:
+                values = numpy.array(curve[key]) * factor
+                axes.plot(curve["temperature"], values, "o", color="black", markersize=3, label="measured")
                 axes.legend(fontsize="small")
     return figure
 

@@ -19,15 +19,17 @@ import units
 from convert_common import ConvertError
 
 STEPS = (0.6, 0.7, 0.8, 0.9)  # relative densities of the states of a firing, where the file names none
+GUESS = {"prefactor": 1e-8, "activation_energy": 500e3}  # m3/s, J/mol: where a calibration begins if the material has none
+HOT = "3000C"  # where the run of a calibration would end if its body did not get dense before
 ROOM = 0.02  # relative density by which the first of them has to lie above the green body
 # What stands in powder.toml, table by table. Keys of [powder] and [firing] are options of sinter green and sinter besides.
 POWDER = ("material", "density", "diameter", "distribution", "sizes-by", "shares", "columns", "length-unit", "method", "compact-to",
           "swell", "damping", "mean-overlap", "aspect")
-FIRING = ("temperature", "schedule", "time-column", "temperature-column", "densities", "coarsening", "chi", "neck-share",
-          "neck-growth", "fix", "confine", "pressure", "tolerance", "alpha", "beta", "eta")
+FIRING = ("calibrate", "temperature", "schedule", "time-column", "temperature-column", "densities", "coarsening", "chi",
+          "neck-share", "neck-growth", "fix", "confine", "pressure", "tolerance", "alpha", "beta", "eta")
 TEST = ("bend", "span", "punch-radius", "max-deflection", "max-force", "cycles", "friction", "tensile-strength", "shear-strength",
         "bond-law", "conductivity", "boundary-resistance", "necks")
-MEASURED = ("dilatometer", "moduli", "strengths", "span", "width", "height")
+MEASURED = ("dilatometer", "expansion", "moduli", "strengths", "span", "width", "height")
 VARY = ("size", "temperature", "material", "density", "schedule", "seeds")
 TOP = ("title", "particles", "seed", "seeds", "powder", "firing", "test", "measured", "vary")
 VARIED = {"size": "size", "temperature": "temperature", "material": "material", "density": "green density", "schedule": "firing"}
@@ -49,6 +51,10 @@ def known(table, names, where):
             raise PlanError(f"{where} has a key '{key}' that is not known; " +
                             (f"is {near[0]} meant?" if near else f"the keys are {', '.join(names)}"))
     return table
+
+
+def one_or_more(value):
+    return value if isinstance(value, list) else [value]
 
 
 def listed(value, where):
@@ -109,13 +115,34 @@ class Study:
         for value in listed(self.firing.get("densities", list(STEPS)), "[firing] densities"):
             if number(value, "a value of [firing] densities") >= 1:
                 raise PlanError(f"[firing] densities has {value}; a relative density lies below 1")
-        for key in ("dilatometer", "moduli", "strengths"):
+        for key in ("moduli", "strengths"):
             if key in self.measured:
                 self.measured[key] = self.file(self.measured[key])
+        if "dilatometer" in self.measured:
+            self.measured["dilatometer"] = [self.curve(name) for name in one_or_more(self.measured["dilatometer"])]
+        self.check_calibration()
         try:
             study_results.measured_of(self.measured)
         except ConvertError as error:
             raise PlanError(str(error)) from None
+
+    def curve(self, name):
+        """File and heating rate of a dilatometer's curve, written FILE or FILE:RATE."""
+        path, _, rate = name.rpartition(":")
+        if not path or units.quantity(rate, "heating_rate") is None:
+            path, rate = name, ""
+        return {"file": self.file(path), "rate": rate, "kelvin_per_second": units.quantity(rate, "heating_rate")}
+
+    def check_calibration(self):
+        if not self.firing.get("calibrate"):
+            return
+        if "dilatometer" not in self.measured:
+            raise PlanError("[firing] calibrate needs a dilatometer's curve, [measured] dilatometer")
+        for key in ("size", "density", "material"):
+            if key in self.vary:
+                raise PlanError(f"[firing] calibrate is of one powder, and [vary] {key} makes several")
+        if "coarsening" in self.firing or "neck-growth" in self.firing:
+            raise PlanError("[firing] calibrate is without coarsening; workflows/kinetics calibrates that")
 
     def material(self, name, output):
         """What --material gets: a built-in name, or a file; a table with `from` becomes a file."""
@@ -156,7 +183,7 @@ class Study:
 
     def firing_of(self, case, start):
         """Options of sinter; start: the relative density of the green body."""
-        options = {key: value for key, value in self.firing.items() if key != "densities"}
+        options = {key: value for key, value in self.firing.items() if key not in ("densities", "calibrate")}
         densities = [value for value in self.firing.get("densities", STEPS) if value > start + ROOM or "densities" in self.firing]
         if "schedule" in case:
             options["schedule"] = case["schedule"]
@@ -195,6 +222,12 @@ def hottest(schedule, temperature):
     if units.quantity(temperature, "temperature") is None:
         raise PlanError(f"[vary] temperature has '{temperature}', which is no temperature such as 1200C")
     return " ".join(temperature if value == top else word for word, value in zip(words, values))
+
+
+def heating_rate(schedule):
+    """The first heating rate of a schedule in words, K/s; None where there is none."""
+    words = schedules.words_of(schedule) if not schedule.endswith(".csv") else []
+    return next((rate for rate in (units.quantity(word, "heating_rate") for word in words) if rate), None)
 
 
 def run_analyze(analyze, name):
@@ -252,15 +285,42 @@ def options_of(table, names):
     return [word for name in names if name in table for word in (f"--{name}", str(table[name]))]
 
 
+def calibration(study, material, output):
+    """Writes what a calibration begins with, a material and the options of its run; the material that comes of it, and the words of
+    `analyze kinetics`."""
+    said = json.loads(run_analyze(study.analyze, material))["material"]
+    said.setdefault("grain_boundary_diffusion", GUESS)
+    said.pop("diffusion_parameter", None)
+    folder = output / "calibration"
+    write(folder / "guess.json", json.dumps(said, indent=1) + "\n")
+    check_material(study, str(folder / "guess.json"))
+    green = {**study.green({}, study.seeds[0], str(folder / "guess.json")), "aspect": "1:1:1"}
+    write(folder / "green.toml", toml(green, fingerprints(green)))
+    rate = study.measured["dilatometer"][0]["rate"] or "10K/min"
+    write(folder / "sinter.toml", toml({"schedule": f"25C {rate} {HOT}"}, ()))
+    words = []
+    for curve in study.measured["dilatometer"]:
+        words += ["--curve", curve["file"] + (":" + curve["rate"] if curve["rate"] else "")]
+    if "shrinkage" in study_results.dilatometer(study.measured["dilatometer"][0]["file"]):
+        words += ["--green-density", str(study.powder.get("compact-to", study.powder.get("density", 0.43)))]
+    return str(output / "calibration" / "material.json"), words + options_of(study.measured, ("expansion", ))
+
+
 def plan(path, output, analyze):
     study = Study(path)
     study.analyze = analyze
     bodies, cases = [], []
     start = study.powder.get("compact-to", study.powder.get("density", 0.43))
+    kinetics = []
     for name, case in study.cases():
         folder = output / name
         material = study.material(case.get("material", study.powder.get("material")), folder)
-        solid = check_material(study, material)["material"]
+        if study.firing.get("calibrate"):
+            calibrated, kinetics = calibration(study, material, output)
+            solid = check_material(study, str(output / "calibration" / "guess.json"))["material"]
+            material = calibrated
+        else:
+            solid = check_material(study, material)["material"]
         firing = study.firing_of(case, case.get("density", start))
         for seed in study.seeds:
             body = f"{name}/{seed}"
@@ -269,22 +329,24 @@ def plan(path, output, analyze):
             write(output / body / "sinter.toml", toml(firing, fingerprints(firing)))
             bodies.append(body)
         cases.append({"name": name, "varied": {key: shown(value) for key, value in case.items()}, "firing": firing,
+                      "kelvin_per_second": heating_rate(firing.get("schedule", "")),
                       "young_modulus": solid["young_modulus"], "constant_diffusion": "diffusion_parameter" in solid,
                       "bodies": [f"{name}/{seed}" for seed in study.seeds]})
     bending = options_of(study.test, ("span", "punch-radius", "max-deflection", "max-force", "cycles", "friction",
                                       "tensile-strength", "shear-strength", "bond-law"))
     conduction = options_of(study.test, ("conductivity", "boundary-resistance"))
     strength = options_of(study.measured, ("span", "width", "height"))
+    moduli = [study.measured["moduli"]] if "moduli" in study.measured else []
     lines = [f"CASES := {' '.join(bodies)}", f"BONDING := --method necks --necks {study.test.get('necks', 'mass')}",
              f"BENT := {'yes' if study.bends() else ''}", f"TO_FAILURE := {'yes' if 'tensile-strength' in study.test else ''}",
              f"BENDING := {quoted(bending)}", f"CONDUCTION := {quoted(conduction)}",
              f"STRENGTHS := {quoted([study.measured['strengths']]) if 'strengths' in study.measured else ''}",
              f"STRENGTH := {quoted(strength)}",
-             f"MEASURED := {quoted(study.measured[key] for key in ('dilatometer', 'moduli') if key in study.measured)}"]
+             f"KINETICS := {quoted(kinetics)}",
+             f"MEASURED := {quoted([*(curve['file'] for curve in study.measured.get('dilatometer', [])), *moduli])}"]
     write(output / "plan.mk", "\n".join(lines) + "\n")
     told = {"title": study.title, "file": str(path), "particles": study.particles, "seeds": study.seeds, "cases": cases,
-            "measured": study.measured, "bend": study.bends(), "conductivity": study.test.get("conductivity"),
-            "densities_asked": "densities" in study.firing}
+            "measured": study.measured, "calibrated": bool(kinetics), "densities_asked": "densities" in study.firing}
     write(output / "plan.json", json.dumps(told, indent=1) + "\n")
 
 

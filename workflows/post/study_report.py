@@ -11,7 +11,7 @@ import kiln
 import report
 from convert_common import ConvertError
 from figure_study import BEYOND
-from study_results import case_rows, comparison_lines
+from study_results import calibration_line, case_rows, comparison_lines
 
 TITLES = {
     "densification": ("Densification", "Every line is a packing. The rate is that of the relative density."),
@@ -106,6 +106,8 @@ def page(run, study):
     boxes = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in facts)
     sections = "".join(case_section(case, not several) for case in study["cases"])
     measured = f"<p>Measured strengths: {html.escape(strengths(study))}.</p>" if strengths(study) else ""
+    if study["calibration"]:
+        measured = f"<p>{html.escape(calibration_line(study['calibration']))}.</p>" + measured
     commands = report.provenance(list(histories(run, study)))[0]
     turned = view(run, study, report.PAGE_SIZE - len(pictures) - report.REST_SIZE)
     interval = "" if len(study["seeds"]) > 1 else " One packing has no interval."
@@ -141,6 +143,8 @@ def markdown(run, study):
         head, rows = case_rows(case)
         lines += ["", "| " + " | ".join(head) + " |", "|" + "---|" * len(head), *("| " + " | ".join(row) + " |" for row in rows)]
         lines += [text for note in notes(case) for text in ("", note)]
+    if study["calibration"]:
+        lines += ["", calibration_line(study["calibration"]) + "."]
     if strengths(study):
         lines += ["", f"Measured strengths: {strengths(study)}."]
     if study["remarks"]:

@@ -42,6 +42,7 @@ CURVE = {  # of curves.csv
     "coordination_number": ("coordination_number", 1.0, 0.0),
     "grain_diameter": ("grain_diameter (nm)", 1e9, 0.0),
 }
+NEEDLESS = "sinter green: material"
 LENGTH = {"dl/l0", "dl/lo", "dl/l", "strain", "shrinkage", "linear shrinkage"}
 DENSITY = {"relative_density", "relative density", "density", "rel. density"}
 
@@ -178,7 +179,8 @@ def measured_of(files):
     """What stands in the tables of a dilatometer and of moduli."""
     found = {}
     if "dilatometer" in files:
-        found["dilatometer"] = dilatometer(files["dilatometer"])
+        found["dilatometer"] = [{"kelvin_per_second": curve["kelvin_per_second"], **dilatometer(curve["file"])}
+                                for curve in files["dilatometer"]]
     if "moduli" in files:
         table = Table(files["moduli"], wanted=("young_modulus",))
         density = column_of(table, DENSITY)
@@ -187,6 +189,15 @@ def measured_of(files):
         found["moduli"] = [{"relative_density": x, "young_modulus": y}
                            for x, y in zip(table.values(density).tolist(), table.values("young_modulus").tolist())]
     return found
+
+
+def curve_for(case, measured):
+    """The dilatometer's curve that a case can be compared with: of its heating rate, or of one that nobody stated."""
+    for curve in measured.get("dilatometer", []):
+        rate = curve["kelvin_per_second"]
+        if rate is None or case["kelvin_per_second"] and abs(rate / case["kelvin_per_second"] - 1) < 1e-6:
+            return curve
+    return None
 
 
 def compared(cases, measured):
@@ -200,9 +211,10 @@ def compared(cases, measured):
             case["moduli_over_measured"] = [
                 {"relative_density": point["relative_density"], "measured": point["young_modulus"],
                  "simulated": float(numpy.interp(point["relative_density"], density, modulus))} for point in inside]
-        curve = measured.get("dilatometer")
+        curve = curve_for(case, measured)
         if not curve or not case["curves"]:
             continue
+        case["dilatometer"] = curve
         key = "relative_density" if "relative_density" in curve else "shrinkage"
         differences = []
         for temperature, value in zip(curve["temperature"], curve[key]):
@@ -286,6 +298,19 @@ def comparison_lines(case):
     return lines
 
 
+def calibration_of(result):
+    """The constants that `analyze kinetics` found, and how well they meet the curves."""
+    body = result["bodies"][0]
+    return {"prefactor": body["constants"]["prefactor"], "activation_energy": body["constants"]["activation_energy"],
+            "curves": [{key: curve[key] for key in ("name", "rms", "max")} for curve in body["curves"]]}
+
+
+def calibration_line(found):
+    curves = "; ".join(f"{curve['name']} within {curve['max']:.3f}" for curve in found["curves"])
+    return (f"Calibrated on the dilatometer: delta D_0b {found['prefactor']:.3g} m3/s, Q {found['activation_energy'] / 1e3:.4g} "
+            f"kJ/mol; relative densities of {curves}")
+
+
 def as_text(study):
     lines = [study["title"], "=" * len(study["title"])]
     for case in study["cases"]:
@@ -297,6 +322,8 @@ def as_text(study):
         lines += ["", *aligned(*case_rows(case)), *comparison_lines(case)]
     lines += ["", f"Means over the packings of a case, ± half of the {100 * CONFIDENCE:.0f} % interval (Student's t)" +
               ("" if len(study["seeds"]) > 1 else "; one packing has none: [vary] seeds = 3")]
+    if study["calibration"]:
+        lines.append(calibration_line(study["calibration"]))
     strengths = study["measured"].get("strengths")
     if strengths:
         lines += [f"Measured strengths: {strengths['bars']} bars, mean {strengths['mean_strength'] / 1e6:.4g} MPa" +
@@ -310,7 +337,7 @@ def as_text(study):
 
 def remarks_of(bodies, plan):
     """What was said, each sentence once, with the bodies that it was said of."""
-    noise = ["sinter green: material"]  # what it lacks for what is done with it was said before all this
+    noise = [NEEDLESS]  # what it lacks for what is done with it was said before all this
     if not plan["densities_asked"]:
         noise.append("short of the required")
     found = {}
@@ -320,10 +347,15 @@ def remarks_of(bodies, plan):
             entry = found.setdefault((kind, plain), {"kind": kind, "sentence": sentence, "bodies": []})
             if body.name not in entry["bodies"]:
                 entry["bodies"].append(body.name)
-    measured = bodies[0].run / "measured_strength.json.said"
-    if "strengths" in plan["measured"] and measured.is_file():
-        for kind, sentence in said_in(measured):
-            found[kind, sentence] = {"kind": kind, "sentence": sentence, "bodies": ["measured strengths"]}
+    run = bodies[0].run
+    others = [(run / "measured_strength.json.said", "measured strengths")] if "strengths" in plan["measured"] else []
+    if plan["calibrated"]:
+        others += [(path, "calibration") for path in sorted((run / "calibration").glob("*.said"))]
+    for path, name in others:
+        for kind, sentence in said_in(path) if path.is_file() else ():
+            # The run of a calibration is to get dense.
+            if not any(word in sentence for word in (NEEDLESS, "fully dense", "above a relative density of 0.9")):
+                found[kind, name, sentence] = {"kind": kind, "sentence": sentence, "bodies": [name]}
     return sorted(found.values(), key=lambda each: each["kind"])
 
 
@@ -342,10 +374,11 @@ def results(run, analyze):
     strengths = kiln.read(run / "measured_strength.json") if "strengths" in plan["measured"] else []
     if strengths:
         measured["strengths"] = dict(strengths[0])
+    fitted = kiln.read(run / "calibration" / "kinetics.json") if plan["calibrated"] else []
     compared(cases, measured)
     write_tables(run, bodies, cases)
     return {"title": plan["title"], "particles": plan["particles"], "seeds": plan["seeds"], "cases": cases, "measured": measured,
-            "remarks": remarks_of(bodies, plan)}
+            "calibration": calibration_of(fitted[0]) if fitted else None, "remarks": remarks_of(bodies, plan)}
 
 
 def main():
