@@ -41,9 +41,11 @@ bool is_short_bar_warning(const std::string& sentence) { return sentence.starts_
 void refuse_block(double span, double height, const std::string& option) {
     const double slenderness = span / height;
     if (slenderness < shortest_bar * (1.0 - rounding))
-        throw Error(beginning + text("%.2g", slenderness) +
-                    ": below 2 it is a block, of which the formulas of beams give up to several times the modulus; bend a bar (sinter "
-                    "green --aspect 6:1:1), or give " + option);
+        throw Error(
+            beginning + text("%.2g", slenderness) +
+            ": below 2 it is a block, of which the formulas of beams give up to several times the modulus; bend a bar (sinter "
+            "green --aspect 6:1:1), or give " +
+            option);
 }
 
 }  // namespace kiln::analysis

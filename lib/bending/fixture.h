@@ -18,8 +18,8 @@ struct Fixture {
     double centre_y;  // of the bar
 };
 
-/// Spans and radii of the options, or their defaults. Throws Error if the span is not shorter than the bar, if it is below twice the
-/// height and the options do not allow that, or if the bar's largest piece does not reach from support to support.
+/// Spans and radii of the options, or their defaults. Throws Error if the span is not shorter than the bar, if it is below twice
+/// the height and the options do not allow that, or if the bar's largest piece does not reach from support to support.
 Fixture place_fixture(const Specimen& specimen, const Options& options);
 
 /// True if particles (rows of the state) reach from support to support.

@@ -1,6 +1,7 @@
 // result_document.cpp: results of a bending test as JSON and as a state.
 #include "bending/result_document.h"
 
+#include "io/material_io.h"
 #include "io/state_io.h"
 #include "physics/bending.h"
 
@@ -64,6 +65,7 @@ Json document(const Result& result, const Options& options, const Json& history)
     Json json{{"format", "dem-bend"},
               {"version", io::format_version},
               {"units", "SI"},
+              {"material", io::material_names(specimen.state)},
               {"relative_density", specimen.relative_density},
               {"span", result.fixture.span},
               {"effective_span", physics::equivalent_span(result.held_span, result.fixture.span)},
@@ -78,6 +80,7 @@ Json document(const Result& result, const Options& options, const Json& history)
               {"friction", options.friction},
               {"young_modulus", specimen.young_modulus},
               {"poisson_ratio", specimen.poisson_ratio},
+              {"poisson_ratio_source", "material " + specimen.solid},
               {"particles", specimen.body.particle.size()},
               {"bonds", specimen.body.bond.size()}};
     Json deflection = Json::array(), punch = Json::array(), force = Json::array();

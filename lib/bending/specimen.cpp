@@ -82,6 +82,7 @@ Specimen cut_specimen(State state, const mechanics::BondModel& model) {
     const Material& material = main_material(state);
     specimen.young_modulus = physics::required(material.young_modulus, material, "young_modulus");
     specimen.poisson_ratio = physics::required(material.poisson_ratio, material, "poisson_ratio");
+    specimen.solid = material.name;
     specimen.state = std::move(state);
     return specimen;
 }

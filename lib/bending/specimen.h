@@ -15,6 +15,7 @@ struct Specimen {
     Vec3 origin, size;              // m, of the bar: the box along periodic axes, else what bonded particles reach
     double young_modulus = 0.0;     // Pa, of the solid that most particles are made of
     double poisson_ratio = 0.0;     // of the same
+    std::string solid;              // its name
     Vec3 turn = Vec3::Zero();       // rad, by which it was turned to rest on the cylinders, see seat_bar; in sum
     std::vector<Vec3> moved;        // m, the same of every node
 };

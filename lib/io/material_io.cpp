@@ -100,6 +100,18 @@ bool is_assumed(const Material& material) {
     return carried_json(material.other, "the unknown keys of material '" + material.name + "'").value(assumed_key, Json()) == true;
 }
 
+Json material_names(const State& state) {
+    std::vector<char> used(state.materials.size(), state.materials.size() == 1);
+    for (const std::int32_t row : state.particles.material) used[static_cast<std::size_t>(row)] = 1;
+    std::string names;
+    for (std::size_t row = 0; row < used.size(); ++row) {
+        if (!used[row]) continue;
+        if (is_assumed(state.materials[row])) return nullptr;
+        names += (names.empty() ? "" : ", ") + state.materials[row].name;
+    }
+    return names;
+}
+
 Material material_named(const std::string& name) {
     if (!name.ends_with(".json")) return physics::builtin_material(name);
     std::ifstream file(name);

@@ -18,9 +18,13 @@ Json material_json(const Material& material);
 /// Material from JSON; place is for the message of the Error thrown for a value that is no finite number or out of its range.
 Material material_from(const Json& json, const std::string& place);
 
-/// The material of a state that names none: alumina, with the key "assumed", which says so to whoever reads it after.
+/// The material of a state that names none, for programs that need no constants: alumina, with the key "assumed". It is not written
+/// with the state; programs that need constants ask for it.
 Material assumed_material();
 bool is_assumed(const Material& material);
+
+/// What the particles of a state consist of, for results: "alumina", "alumina, zirconia"; null where the state does not say.
+Json material_names(const State& state);
 
 /// A built-in material by its name, or that of a file NAME.json. Throws Error for a name that is neither, or what the file holds.
 Material material_named(const std::string& name);

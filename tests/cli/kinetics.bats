@@ -51,7 +51,7 @@ setup() { cd "$BATS_FILE_TMPDIR"; }
 }
 
 @test "a history alone has the material that is said; a state before it says its own" {
-    run -0 --separate-stderr "$ANALYZE" kinetics -q --curve "$SLOW" --curve "$FAST" --green-density 0.587 --expansion 8e-6 history.jsonl
+    run -0 --separate-stderr "$ANALYZE" kinetics -q --material alumina --curve "$SLOW" --curve "$FAST" --green-density 0.587 --expansion 8e-6 history.jsonl
     alone=$(value .bodies[0].constants.activation_energy)
     run -0 --separate-stderr "$ANALYZE" kinetics --curve "$SLOW" --curve "$FAST" --green-density 0.587 --expansion 8e-6 \
         fired.kiln history.jsonl

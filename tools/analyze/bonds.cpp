@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/material_io.h"
 #include "io/state_io.h"
 #include "physics/bond_stress.h"
 #include "tools/analyze/analyze.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr const char* bonds_footer =
     "Keys of a result:\n"
+    "  material, time (s)    of the state\n"
     "  relative_density, particles, count, mean_diameter (m), mean_length (m)\n"
     "  bond_volume_fraction  of the solid; 0 for necks, whose solid is counted with the particles\n"
     "  histogram             of the radii {edges (m), counts}\n"
@@ -30,9 +32,13 @@ constexpr const char* bonds_footer =
     "  analyze bonds --table bonded.kiln\n"
     "  bondify sintered.kiln | analyze bonds --bins 50 | jq .histogram";
 
-const std::vector<Column> bonds_columns{{"relative_density", "relative density", ""}, {"particles", "particles", ""},
-                                  {"count", "bonds", ""},                       {"mean_diameter", "mean diameter", "m"},
-                                  {"mean_length", "mean length", "m"},          {"bond_volume_fraction", "bond fraction", ""}};
+const std::vector<Column> bonds_columns{{"material", "material", ""},
+                                        {"relative_density", "relative density", ""},
+                                        {"particles", "particles", ""},
+                                        {"count", "bonds", ""},
+                                        {"mean_diameter", "mean diameter", "m"},
+                                        {"mean_length", "mean length", "m"},
+                                        {"bond_volume_fraction", "bond fraction", ""}};
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -77,6 +83,7 @@ Json bonds_of(const State& state, std::size_t bins) {
     if (!diameter.is_null()) diameter = 2.0 * diameter.get<double>();
     Json result{{"format", "dem-bonds"},
                 {"version", io::format_version},
+                {"material", io::material_names(state)},
                 {"time", state.time},
                 {"relative_density", density.value ? Json(*density.value) : Json()},
                 {"particles", state.particles.size()},

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Eigenvalues>
 
+#include "io/material_io.h"
 #include "io/state_io.h"
 #include "mechanics/conduction.h"
 #include "physics/conduction.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr const char* conductivity_footer =
     "The conductivity may be that of heat or of anything else that flows by a gradient; the result is in proportion to it.\n\n"
     "Keys of a result:\n"
+    "  material          names in one text; null of an image, and where the state does not say\n"
     "  model, relative_density, iterations, residual\n"
     "  tensor            3x3, W/(m K)\n"
     "  conductivity      W/(m K), a third of its trace\n"
@@ -35,14 +37,16 @@ constexpr const char* conductivity_footer =
     "  analyze select --density 0.79 sintered.kiln | bondify --method necks |\n"
     "      analyze conductivity --model voxel --voxels 4,6 --conductivity 30W/m/K";
 
-const std::vector<Column> conductivity_network_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> conductivity_network_columns{{"material", "material", ""},
+                                                  {"relative_density", "relative density", ""},
                                                        {"conductivity", "conductivity", "W/(m K)"},
                                                        {"bound", "upper bound", "W/(m K)"},
                                                        {"anisotropy", "anisotropy", ""},
                                                        {"coordination_number", "coordination number", ""},
                                                        {"iterations", "iterations", ""}};
 
-const std::vector<Column> conductivity_voxel_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> conductivity_voxel_columns{{"material", "material", ""},
+                                                  {"relative_density", "relative density", ""},
                                                      {"union_fraction", "union", ""},
                                                      {"conductivity", "conductivity", "W/(m K)"},
                                                      {"extrapolation_error", "+-", "W/(m K)"},
@@ -131,7 +135,8 @@ int conductivity(int argc, char** argv) {
 
     Report report(common, table, options.model == Model::voxel ? conductivity_voxel_columns : conductivity_network_columns);
     bool converged = true;
-    const auto add = [&](Json result) {
+    const auto add = [&](Json result, const Json& material) {
+        result["material"] = material;
         converged = converged && result["converged"].get<bool>();
         report.add(std::move(result));
     };
@@ -140,17 +145,18 @@ int conductivity(int argc, char** argv) {
     const double solid = conductor.conductivity;
     if (!options.image.empty()) {
         const voxel::OnGrid found = solve_image("analyze conductivity", options, voxel::Conductor{solid}, common, watch);
-        add(of_voxels({found}, found.union_fraction, solid, voxel::Order::first));
+        add(of_voxels({found}, found.union_fraction, solid, voxel::Order::first), nullptr);
     } else {
         io::Input input(common.files, cli::stop_requested);
         cli::for_each_state(input, [&](const State& state, const std::string&) {
             if (options.model == Model::network) {
-                add(of_network(state, conductor, options.tolerance));
+                add(of_network(state, conductor, options.tolerance), io::material_names(state));
                 return true;
             }
             add(of_voxels(
                 solve_state("analyze conductivity", options, state, voxel::conducting_phases(state, solid), common, watch),
-                relative_density(state), solid, order_of(state)));
+                relative_density(state), solid, order_of(state)),
+                io::material_names(state));
             return true;
         });
     }

@@ -6,6 +6,7 @@
 #include "tools/common/quantity_options.h"
 #include "tools/common/sizes.h"
 #include "tools/common/value_options.h"
+#include "io/material_io.h"
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
 #include "analysis/histogram.h"
@@ -19,7 +20,8 @@ namespace {
 
 constexpr const char* density_footer =
     "Keys of a result:\n"
-    "  time (s), relative_density, particles\n"
+    "  material                  its name, or names; null where the state does not say\n"
+    "  time (s), temperature (K; null where the state has none), relative_density, particles\n"
     "  measure                   volume that the density refers to, see below\n"
     "  coordination_number       contacts per particle: overlaps, or bonds where there are some\n"
     "  mean_overlap_ratio        h/2R, or h/(r1 + r2) of unequal spheres; 0 for bonds of shrunk particles\n"
@@ -52,7 +54,9 @@ constexpr const char* density_footer =
     "  sinter --temperature 1200C --every 10s --at-time 1min green.kiln | analyze density |\n"
     "      jq -r '[.time, .relative_density] | @tsv'";
 
-const std::vector<Column> density_columns{{"time", "time", "s"},
+const std::vector<Column> density_columns{{"material", "material", ""},
+                                  {"time", "time", "s"},
+                                  {"temperature", "temperature", "K"},
                                   {"relative_density", "relative density", ""},
                                   {"measure", "measure", ""},
                                   {"particles", "particles", ""},
@@ -139,7 +143,9 @@ Json density_of(const State& state, const DensityOptions& options) {
     const analysis::Density density = analysis::measured_density(state, options.measure, options.probe);
     Json result{{"format", "dem-density"},
                 {"version", io::format_version},
+                {"material", io::material_names(state)},
                 {"time", state.time},
+                {"temperature", state.temperature ? Json(*state.temperature) : Json()},
                 {"relative_density", density.value ? Json(*density.value) : Json()},
                 {"measure", density.measure},
                 {"particles", state.particles.size()}};

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "io/material_io.h"
 #include "io/state_io.h"
 #include "mechanics/elastic_tensor.h"
 #include "physics/materials.h"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr const char* elastic_footer =
     "Keys of a result:\n"
+    "  material        names in one text; null of an image\n"
     "  model, relative_density, iterations, residual\n"
     "  stiffness       6x6, Pa; xx, yy, zz, yz, xz, xy, engineering shear\n"
     "  young_modulus (Pa), poisson_ratio  of its isotropic (Voigt) average\n"
@@ -45,7 +47,8 @@ constexpr const char* elastic_footer =
     "  analyze select --density 0.79 sintered.kiln | analyze voxel --voxels 5 -o body.npy\n"
     "  analyze elastic --model voxel --image body.npy --young-modulus 400GPa --poisson-ratio 0.23";
 
-const std::vector<Column> elastic_network_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> elastic_network_columns{{"material", "material", ""},
+                                                  {"relative_density", "relative density", ""},
                                                   {"young_modulus", "Young's modulus", "Pa"},
                                                   {"poisson_ratio", "Poisson's ratio", ""},
                                                   {"anisotropy", "anisotropy", ""},
@@ -53,7 +56,8 @@ const std::vector<Column> elastic_network_columns{{"relative_density", "relative
                                                   {"bond_law", "bond law", ""},
                                                   {"iterations", "iterations", ""}};
 
-const std::vector<Column> elastic_voxel_columns{{"relative_density", "relative density", ""},
+const std::vector<Column> elastic_voxel_columns{{"material", "material", ""},
+                                                  {"relative_density", "relative density", ""},
                                                 {"union_fraction", "union", ""},
                                                 {"young_modulus", "Young's modulus", "Pa"},
                                                 {"extrapolation_error", "+-", "Pa"},
@@ -168,7 +172,8 @@ int elastic(int argc, char** argv) {
 
     Report report(common, table, options.model == Model::voxel ? elastic_voxel_columns : elastic_network_columns);
     bool converged = true;
-    const auto add = [&](Json result) {
+    const auto add = [&](Json result, const Json& name) {
+        result["material"] = name;
         converged = converged && result["converged"].get<bool>();
         report.add(std::move(result));
     };
@@ -176,7 +181,7 @@ int elastic(int argc, char** argv) {
     const Watch watch{cli::stop_requested, [&](double fraction) { progress.show(fraction, "voxels"); }};
     if (!options.image.empty()) {
         const voxel::OnGrid found = solve_image("analyze elastic", options, voxel::solid(young, poisson), common, watch);
-        add(of_voxels({found}, found.union_fraction, voxel::Order::first));
+        add(of_voxels({found}, found.union_fraction, voxel::Order::first), nullptr);
     } else {
         io::Input input(common.files, cli::stop_requested);
         material.warn_by([&](const std::string& sentence) {
@@ -185,11 +190,12 @@ int elastic(int argc, char** argv) {
         material.needed_for({physics::Use::elasticity});
         cli::for_each_state(input, material, [&](const State& state, const std::string&) {
             if (options.model == Model::network) {
-                add(of_network(state, model, options.tolerance));
+                add(of_network(state, model, options.tolerance), io::material_names(state));
                 return true;
             }
             add(of_voxels(solve_state("analyze elastic", options, state, voxel::elastic_phases(state), common, watch),
-                          relative_density(state), order_of(state)));
+                          relative_density(state), order_of(state)),
+                io::material_names(state));
             return true;
         });
     }

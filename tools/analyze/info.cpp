@@ -15,7 +15,8 @@ namespace {
 constexpr const char* info_footer =
     "Keys of a result:\n"
     "  document, kind\n"
-    "  time (s), temperature (K), relative_density, particles, bonds (counts), box (m), materials\n"
+    "  time (s), temperature (K), relative_density, particles, bonds (counts), box (m)\n"
+    "  material, materials  names in one text (null where the state does not say); all constants\n"
     "  arrays               type and shape as they came\n"
     "  history, last_step   number of steps, and the last one\n"
     "  keys                 of a document that is not a state\n\n"
@@ -25,6 +26,7 @@ constexpr const char* info_footer =
 
 const std::vector<Column> info_columns{{"document", "document", ""},
                                   {"kind", "kind", ""},
+                                  {"material", "material", ""},
                                   {"time", "time", "s"},
                                   {"relative_density", "relative density", ""},
                                   {"particles", "particles", ""},
@@ -57,8 +59,10 @@ Json state_info(io::Document document) {
     entry["bonds"] = state.bonds ? Json(state.bonds->size()) : Json();
     entry["box"] = box;
     entry["arrays"] = arrays;
+    entry["material"] = io::material_names(state);
     entry["materials"] = Json::array();
-    for (const Material& material : state.materials) entry["materials"].push_back(io::material_json(material));
+    for (const Material& material : state.materials)
+        if (!io::is_assumed(material)) entry["materials"].push_back(io::material_json(material));
     add_history(entry, io::history_of(state));
     return entry;
 }
@@ -66,7 +70,7 @@ Json state_info(io::Document document) {
 Json other_info(const io::Document& document) {
     Json entry{{"format", "dem-info"}, {"version", io::format_version}, {"document", document.place}};
     entry["kind"] = document.header["format"];
-    for (const char* key : {"time", "relative_density"})
+    for (const char* key : {"material", "time", "relative_density"})
         if (document.header.contains(key)) entry[key] = document.header[key];
     entry["keys"] = Json::array();
     for (const auto& [key, value] : document.header.items()) entry["keys"].push_back(key);

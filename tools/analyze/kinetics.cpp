@@ -53,9 +53,10 @@ const std::vector<Column> kinetics_columns{{"from", "from", ""},
                                            {"error", "its error", ""},
                                            {"prefactor", "prefactor, m3/s", ""},
                                            {"surface", "surface, m3/s", ""},
-                                           {"rms", "rms deviation", ""},
+                                           {"rms", "rms deviation of density", ""},
                                            {"max", "largest", ""},
-                                           {"held_out", "largest, held out", ""}};
+                                           {"held_out", "largest, held out", ""},
+                                           {"material", "material", ""}};
 
 constexpr std::size_t densities_by_default = 11;
 
@@ -63,7 +64,7 @@ struct KineticsOptions {
     std::vector<std::string> curves, held_out, firings, predicted;
     std::vector<double> densities;
     Dilatometer dilatometer;
-    std::string grain_sizes, material = "alumina", save_material;
+    std::string grain_sizes, material, save_material;
     bool table = false;
 
     void add_to(CLI::App& app);
@@ -111,8 +112,7 @@ void KineticsOptions::add_to(CLI::App& app) {
                    "Measured grain sizes, fitted with the densities: relative_density, and 'grain size (um)' as mean diameter or "
                    "'mean intercept (um)', and standard_error")
         ->type_name("FILE.csv");
-    app.add_option("--material", material, "Material of histories without a state: built-in, or a file NAME.json")
-        ->capture_default_str()
+    app.add_option("--material", material, "Material of histories without a state that names one: built-in, or a file NAME.json")
         ->type_name("NAME");
     app.add_option("--save-material", save_material, "File for the first body's material, for sinter green --material")
         ->type_name("FILE.json");
@@ -151,6 +151,13 @@ Measured KineticsOptions::read() const {
     return measured;
 }
 
+/// Standard error of the activation energy, kJ/mol, where it is below the energy.
+Json error_cell(const Json& body) {
+    if (body["standard_errors"].is_null()) return nullptr;
+    const double error = body["standard_errors"]["activation_energy"].get<double>();
+    return says_nothing(body["constants"]["activation_energy"].get<double>(), error) ? Json(not_determined) : Json(error / 1e3);
+}
+
 /// Rows of the table: what was found without a model, then each body.
 std::vector<Json> table_rows(const Json& result, std::size_t curves) {
     constexpr double kilo = 1e3;
@@ -187,7 +194,8 @@ std::vector<Json> table_rows(const Json& result, std::size_t curves) {
             {{"from", body["name"]},
              {"curves", body["curves"].size()},
              {"activation_energy", in_kilo(constants["activation_energy"])},
-             {"error", body["standard_errors"].is_null() ? Json() : in_kilo(body["standard_errors"]["activation_energy"])},
+             {"material", body["material"]["name"]},
+             {"error", error_cell(body)},
              {"prefactor", constants["prefactor"]},
              {"surface", constants.contains("surface_diffusion") ? constants["surface_diffusion"]["prefactor"] : Json()},
              {"rms", std::sqrt(squares / points)},
@@ -205,7 +213,8 @@ Json found(const KineticsOptions& options, const Measured& measured, const std::
                                               : options.densities;
     result["model_free"] = model_free_json(measured.fitted, densities);
     if (files.empty()) return result;
-    const std::vector<Body> bodies = read_bodies(files, io::material_named(options.material));
+    const auto material = options.material.empty() ? std::nullopt : std::optional(io::material_named(options.material));
+    const std::vector<Body> bodies = read_bodies(files, material);
     if (bodies.empty()) throw Error("the files hold no history of a run");
     result.update(bodies_json(measured, bodies));
     result["material"] = result["bodies"][0]["material"];

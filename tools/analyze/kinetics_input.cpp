@@ -284,7 +284,7 @@ std::optional<analysis::Activated> surface_of(const Material& material) {
 /// Collects runs line by line.
 class Reader {
    public:
-    explicit Reader(const Material& material) : material_(material) {}
+    explicit Reader(const std::optional<Material>& material) : material_(material) {}
 
     void take(io::Document document) {
         const std::string file = document.place.substr(0, document.place.rfind(", document"));
@@ -336,7 +336,11 @@ class Reader {
         if (lines_.empty()) return;
         const RunOptions options = state_ ? options_of(*state_) : RunOptions{"alone " + std::to_string(bodies_.size()), "", false};
         const double start = lines_.front().time - lines_.front().duration;
-        const Material& material = state_ && !state_->materials.empty() ? state_->materials.front() : material_;
+        const bool named = state_ && !state_->materials.empty() && !io::is_assumed(state_->materials.front());
+        if (!named && !material_)
+            throw io::PlacedError(file_ +
+                                  ": no state before this history names a material; --material NAME or FILE.json says what it is");
+        const Material& material = named ? state_->materials.front() : *material_;
         SimulatedRun run{file_,
                          material,
                          options.surface ? surface_of(material) : std::nullopt,
@@ -362,7 +366,7 @@ class Reader {
         grains_ = 0;
     }
 
-    const Material& material_;
+    const std::optional<Material>& material_;
     std::optional<State> state_;
     std::string file_;
     std::vector<Line> lines_;
@@ -373,7 +377,7 @@ class Reader {
 
 }  // namespace
 
-std::vector<Body> read_bodies(const std::vector<std::string>& files, const Material& material) {
+std::vector<Body> read_bodies(const std::vector<std::string>& files, const std::optional<Material>& material) {
     Reader reader(material);
     io::Input input(files, cli::stop_requested);
     cli::for_each_document(input, [&](io::Document document) { reader.take(std::move(document)); });

@@ -46,7 +46,8 @@ struct Body {
 
 /// The runs of the histories (lines of `sinter --history`) of the files. A state before a history is that of its run: it says
 /// material, schedule, and by its own history which runs are of one body under the same options, apart from schedule, material
-/// and what was written. A history without a state is of a body of its own, of `material`. Throws Error naming file and line.
-std::vector<Body> read_bodies(const std::vector<std::string>& files, const Material& material);
+/// and what was written. A history without a state is of a body of its own; it, and one whose state names no
+/// material, is of `material`. Throws Error naming file and line, and where there is none.
+std::vector<Body> read_bodies(const std::vector<std::string>& files, const std::optional<Material>& material);
 
 }  // namespace kiln::analyze

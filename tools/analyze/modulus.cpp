@@ -16,6 +16,7 @@
 #include "tools/analyze/measured_test.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
+#include "tools/analyze/table_material.h"
 #include "analysis/student.h"
 #include "analysis/unloading.h"
 
@@ -37,26 +38,37 @@ constexpr const char* modulus_footer =
     "and --height, and --density if its modulus is to be fitted. With a dem-bend document they replace its own.\n\n"
     "Keys of a result:\n"
     "  young_modulus (Pa), relative_density, slope (N/m), compliance (m/N), window, points\n"
-    "  standard_error       Pa; null for two points\n"
-    "  confidence_interval  95 %, Student's t; null for two points\n"
+    "  standard_error       Pa; null for two points, and for simulated tests, whose curves do not scatter\n"
+    "  confidence_interval  95 %, Student's t; null likewise\n"
     "  r_squared            share of the forces' variation that the line explains\n"
     "  branch               unloading or loading\n"
     "  slenderness          span over height, L/h\n"
     "  shear_correction     the bracket\n"
+    "  poisson_ratio        in the bracket; null with --shear none\n"
+    "  poisson_ratio_source  the option, the material or the test that it is from\n"
     "  warnings             sentences, those of the test too; of bars with L/h below 4\n"
+    "  material             its name; null where neither the test nor --material says it\n"
     "  bond_law, method     of the test\n"
     "  columns, turned      of a table: the headings that were read, and those whose signs were turned\n"
-    "The error says how straight the curve is, not how much packings or specimens differ.\n\n"
+    "The error says how straight a measured curve is, not how much specimens differ; how much packings differ, several seeds say "
+    "(analyze mean).\n\n"
     "Examples:\n"
     "  bend bonded.kiln | analyze modulus --table\n"
     "  analyze modulus --window 0.9:0.1 bent.json | analyze fit\n"
     "  analyze modulus --span 40mm --width 4mm --height 3mm --compliance 0.2um/N --density 0.79 bar7.csv\n"
     "  analyze modulus --span 40mm --width 4mm --height 3mm --branch loading --plot bar7.svg bar7.csv";
 
-const std::vector<Column> modulus_columns{{"relative_density", "relative density", ""}, {"young_modulus", "Young's modulus", "Pa"},
-                                  {"standard_error", "standard error", "Pa"},   {"slenderness", "L/h", ""},
-                                  {"points", "points", ""},                     {"branch", "branch", ""},                     {"bond_law", "bond law", ""},
-                                  {"method", "method", ""}};
+const std::vector<Column> modulus_columns{{"material", "material", ""},
+                                          {"relative_density", "relative density", ""},
+                                          {"young_modulus", "Young's modulus", "Pa"},
+                                          {"standard_error", "standard error", "Pa"},
+                                          {"slenderness", "L/h", ""},
+                                          {"points", "points", ""},
+                                          {"branch", "branch", ""},
+                                          {"bond_law", "bond law", ""},
+                                          {"method", "method", ""}};
+
+constexpr double usual_poisson_ratio = 0.23;  // between 0.2 and 0.3 of oxides; of it E moves by 0.1 % of 0.1 at L/h = 13
 
 struct ModulusOptions {
     analysis::Window window;
@@ -66,6 +78,7 @@ struct ModulusOptions {
     bool shear = true;
     bool loading = false;
     ColumnOptions columns;
+    TableMaterial material;
     std::string plot;  // a file; empty: none
 
     [[nodiscard]] std::string branch() const { return loading ? "loading" : "unloading"; }
@@ -86,7 +99,8 @@ void ModulusOptions::add_to(CLI::App& app) {
     bar.add_to(app);
     add_optional(app, "--density", density, Dimension::none, "Relative density of the specimen");
     add_optional(app, "--poisson-ratio", poisson_ratio, Dimension::none,
-                 "Poisson's ratio in the shear correction (default 0.23 for a CSV)");
+                 "Poisson's ratio in the shear correction (default: that of the test or of --material, else 0.23)");
+    material.add_to(app, "its Poisson's ratio enters the shear correction");
     cli::add_quantity(app, "--compliance", compliance, Dimension::compliance,
                       "Deflection of machine and fixture per force, taken off the measured deflection", "0");
     cli::add_choice(app, "--shear", shear, {{"timoshenko", true}, {"none", false}},
@@ -104,7 +118,14 @@ void ModulusOptions::add_to(CLI::App& app) {
 /// The test of a table; warns where signs were turned.
 io::Document test_from_table(const std::string& file, const ModulusOptions& options, bool quiet) {
     io::Document document = measured_test(io::CsvTable(file), file, options.columns, true);
-    document.header["poisson_ratio"] = options.poisson_ratio.value_or(0.23);  // alumina
+    document.header["material"] = options.material.name();
+    if (const auto& solid = options.material.material; solid && solid->poisson_ratio) {
+        document.header["poisson_ratio"] = *solid->poisson_ratio;
+        document.header["poisson_ratio_source"] = "material " + solid->name;
+    } else {
+        document.header["poisson_ratio"] = usual_poisson_ratio;
+        document.header["poisson_ratio_source"] = "usual value, no material says it";
+    }
     if (!quiet && !document.header["turned"].empty())
         cli::warn("analyze modulus", turned_sentence(document));
     return document;
@@ -176,12 +197,19 @@ io::Chart chart_of(const Curve& curve, const BranchFit& fit, const ModulusOption
             {}};
 }
 
-/// Poisson's ratio of the shear correction: the option's, else the document's, which need not have one.
-double poisson_ratio_of(const io::Document& document, const ModulusOptions& options) {
-    if (options.poisson_ratio) return *options.poisson_ratio;
+/// Poisson's ratio of the shear correction and where it is from: the option's, else the document's, which need not have one.
+std::pair<double, std::string> poisson_ratio_of(const io::Document& document, const ModulusOptions& options) {
+    if (options.poisson_ratio) return {*options.poisson_ratio, "--poisson-ratio"};
     if (!document.header.contains("poisson_ratio"))
         throw Error("has no poisson_ratio, which the shear correction requires; give --poisson-ratio or --shear none");
-    return number_at(document, "poisson_ratio", -1.0);
+    const Json source = document.header.value("poisson_ratio_source", Json("the test"));
+    return {number_at(document, "poisson_ratio", -1.0), source.is_string() ? source.get<std::string>() : "the test"};
+}
+
+/// Standard error of the slope. That of a simulated test is null: its curve has no scatter, and what the line leaves over is the
+/// solver's rounding and the curvature of its contacts.
+Json slope_error(const BranchFit& fit, bool measured) {
+    return measured && std::isfinite(fit.line.slope_error) ? Json(fit.line.slope_error) : Json();
 }
 
 /// The sentences of the test, and one on a short bar where it has none; that is said at once.
@@ -197,7 +225,10 @@ Json warnings_of(const io::Document& document, const ModulusOptions& options, do
 /// The result of a test; the picture of it into `plot` if one is asked for.
 Json modulus_of(const io::Document& document, const ModulusOptions& options, bool quiet, std::string& plot) {
     expect_format(document, {"dem-bend"}, "modulus");
-    if (!is_measured(document)) options.columns.refuse_with_documents();
+    if (!is_measured(document)) {
+        options.columns.refuse_with_documents();
+        options.material.refuse_with_documents();
+    }
     const double span = options.bar.size(document, "span");
     const double width = options.bar.size(document, "width"), height = options.bar.size(document, "height");
     options.bar.refuse_block(document);
@@ -205,24 +236,35 @@ Json modulus_of(const io::Document& document, const ModulusOptions& options, boo
     if (!options.density && !is_measured(document)) density = positive_at(document, "relative_density");
     const Curve curve = curve_of(document);
     const BranchFit fit = fit_branch(curve, options, is_measured(document));
-    const double correction = options.shear ? physics::shear_correction(height, span, poisson_ratio_of(document, options)) : 1.0;
+    Json poisson_ratio, poisson_source;
+    double correction = 1.0;
+    if (options.shear) {
+        const auto [ratio, from] = poisson_ratio_of(document, options);
+        correction = physics::shear_correction(height, span, ratio);
+        poisson_ratio = ratio;
+        poisson_source = from;
+    }
     const double factor = physics::slender_modulus(1.0, span, width, height) * correction;
-    const double modulus = factor * fit.line.slope, error = factor * fit.line.slope_error;
-    Json interval;
-    if (std::isfinite(error)) {
-        const double reach = analysis::student_factor(fit.force.size() - 2, confidence) * error;
+    const double modulus = factor * fit.line.slope;
+    Json error = slope_error(fit, is_measured(document)), interval;
+    if (!error.is_null()) {
+        error = factor * error.get<double>();
+        const double reach = analysis::student_factor(fit.force.size() - 2, confidence) * error.get<double>();
         interval = {modulus - reach, modulus + reach};
     }
     const std::string source = std::filesystem::path(document.place).filename().string();
     Json result{{"format", "dem-modulus"},
                 {"version", io::format_version},
+                {"material", document.header.value("material", Json())},
                 {"young_modulus", modulus},
-                {"standard_error", std::isfinite(error) ? Json(error) : Json()},
+                {"standard_error", error},
                 {"confidence_interval", interval},
                 {"slope", fit.line.slope},
                 {"relative_density", density},
                 {"slenderness", span / height},
                 {"shear_correction", correction},
+                {"poisson_ratio", poisson_ratio},
+                {"poisson_ratio_source", poisson_source},
                 {"compliance", options.compliance},
                 {"window", {options.window.upper, options.window.lower}},
                 {"points", fit.force.size()},

@@ -120,6 +120,8 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
     return cli::done;
 }
 
+bool says_nothing(double value, double reach) { return !(reach < std::abs(value)); }
+
 Json histogram_json(const analysis::Histogram& histogram) {
     return {{"edges", histogram.edges}, {"counts", histogram.counts}};
 }

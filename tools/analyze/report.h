@@ -65,6 +65,12 @@ int report_each(CLI::App& app, int argc, char** argv, const std::vector<Column>&
                 const std::function<Json(io::Document)>& convert,
                 const std::function<io::Document(const std::string&)>& from_table = {});
 
+/// What a table shows in place of the error of a number whose interval of confidence tells nothing.
+constexpr const char* not_determined = "not determined";
+
+/// Whether it does: it reaches farther to either side than the value is large.
+bool says_nothing(double value, double reach);
+
 /// {edges, counts}.
 Json histogram_json(const analysis::Histogram& histogram);
 

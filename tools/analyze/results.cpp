@@ -58,4 +58,15 @@ std::vector<std::string> warnings_at(const io::Document& document) {
     return found->get<std::vector<std::string>>();
 }
 
+Json joined_materials(const std::vector<Json>& objects) {
+    std::vector<std::string> names;
+    for (const Json& each : objects) {
+        const Json name = each.value("material", Json());
+        if (name.is_string() && std::ranges::find(names, name.get<std::string>()) == names.end()) names.push_back(name);
+    }
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return names.empty() ? Json() : Json(text);
+}
+
 }  // namespace kiln::analyze

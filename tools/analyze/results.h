@@ -26,4 +26,7 @@ std::vector<double> numbers_at(const io::Document& document, const std::string& 
 /// The sentences of the document's "warnings", none where it has no such key. Throws Error where they are no list of sentences.
 std::vector<std::string> warnings_at(const io::Document& document);
 
+/// The different "material" of objects in one text, in the order in which they come; null where none has one.
+Json joined_materials(const std::vector<Json>& objects);
+
 }  // namespace kiln::analyze

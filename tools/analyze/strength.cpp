@@ -17,6 +17,7 @@
 #include "tools/analyze/measured_test.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
+#include "tools/analyze/table_material.h"
 #include "tools/common/each_state.h"
 
 namespace kiln::analyze {
@@ -33,6 +34,7 @@ constexpr const char* strength_footer =
     "are "
     "no columns.\n\n"
     "Keys of a result:\n"
+    "  material                  names in one text; null where nothing says it\n"
     "  bars, strengths           number of bars, and of each its strength (Pa), source and readings;\n"
     "                            fall_recorded: whether the force falls after its largest\n"
     "  mean_strength, standard_deviation  Pa; the deviation is null for one bar\n"
@@ -50,7 +52,8 @@ constexpr const char* strength_footer =
     "  analyze strength --plot weibull.svg strengths.csv  # strength (MPa)\n"
     "  bend --tensile-strength 500MPa bonded.kiln | analyze strength --table";
 
-const std::vector<Column> strength_columns{{"bars", "bars", ""},
+const std::vector<Column> strength_columns{{"material", "material", ""},
+                                           {"bars", "bars", ""},
                                            {"mean_strength", "mean strength", "Pa"},
                                            {"standard_deviation", "standard deviation", "Pa"},
                                            {"weibull_modulus", "Weibull modulus", ""},
@@ -69,6 +72,7 @@ struct StrengthOptions {
     BarOptions bar;
     std::optional<double> inner_span;  // m
     ColumnOptions columns;
+    TableMaterial material;
     std::string plot;  // a file; empty: none
     bool table = false;
 
@@ -80,6 +84,7 @@ void StrengthOptions::add_to(CLI::App& app) {
     add_optional(app, "--inner-span", inner_span, io::Dimension::length,
                  "Distance between two points of load, as in a test at four points (default: one point)");
     columns.add_to(app);
+    material.add_to(app, "its name stands in the result");
     app.add_option("--plot", plot, "Also a picture: the share of broken bars against their strength on Weibull's axes")
         ->type_name("FILE.svg");
     add_table(app, table);
@@ -100,6 +105,8 @@ class Bars {
         expect_format(document, {"dem-bend"}, "strength");
         if (is_measured(document)) return add_test(document);
         options_.columns.refuse_with_documents();
+        options_.material.refuse_with_documents();
+        material_ = document.header.value("material", Json());
         if (options_.inner_span) throw Error("is a test with one point of load, for which --inner-span has no meaning");
         if (!document.header.contains("strength") || !document.header["strength"].is_object())
             throw Error("was not bent until it broke, as bend --tensile-strength does");
@@ -116,6 +123,7 @@ class Bars {
     void add_table(const std::string& file) {
         using io::Dimension;
         const io::CsvTable table(file);
+        material_ = options_.material.name();
         const bool chosen = !options_.columns.force.empty();
         if (const auto column = chosen ? std::nullopt : table.find(strength_names, Dimension::pressure)) {
             const std::vector<double> strengths = table.values(*column, Dimension::pressure);
@@ -131,6 +139,9 @@ class Bars {
     [[nodiscard]] const std::vector<double>& strengths() const { return strengths_; }
     [[nodiscard]] const Json& warnings() const { return warnings_; }
 
+    /// The names of the materials of all bars in one text; null where no bar says it.
+    [[nodiscard]] Json material() const { return joined_materials(bars_); }
+
    private:
     static std::string source_of(const std::string& place) { return std::filesystem::path(place).filename().string(); }
 
@@ -143,7 +154,8 @@ class Bars {
     /// Refuses blocks; keeps what the test warns of, and warns of short bars where it does not.
     void check_slenderness(const io::Document& document) {
         options_.bar.refuse_block(document);
-        for (const std::string& sentence : options_.bar.warnings(document)) warnings_.push_back(source_of(document.place) + ": " + sentence);
+        for (const std::string& sentence : options_.bar.warnings(document))
+            warnings_.push_back(source_of(document.place) + ": " + sentence);
         if (const auto sentence = options_.bar.short_bar_warning(document, std::nullopt)) {
             warn(document.place + ": " + *sentence);
             warnings_.push_back(source_of(document.place) + ": " + *sentence);
@@ -194,12 +206,12 @@ class Bars {
     void add_strength(double strength, const std::string& source) {
         if (!(strength > 0.0)) throw io::PlacedError(source + ": the strength is not above zero");
         strengths_.push_back(strength);
-        bars_.push_back({{"strength", strength}, {"source", source}});
+        bars_.push_back({{"strength", strength}, {"source", source}, {"material", material_}});
     }
 
     const StrengthOptions& options_;
     bool quiet_;
-    Json warnings_ = Json::array();
+    Json warnings_ = Json::array(), material_;
     std::vector<Json> bars_;
     std::vector<double> strengths_;
 };
@@ -211,6 +223,7 @@ Json strength_result(const Bars& bars) {
     const double of_sample = std::sqrt(count / (count - 1.0));
     Json result{{"format", "dem-strength"},
                 {"version", io::format_version},
+                {"material", bars.material()},
                 {"bars", strengths.size()},
                 {"strengths", bars.bars()},
                 {"mean_strength", spread->mean},

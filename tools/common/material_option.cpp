@@ -1,4 +1,4 @@
-// material_option.cpp: materials of the command line in a document, and the warning where none is named.
+// material_option.cpp: materials of the command line in a document, and the question where none is named.
 #include "tools/common/material_option.h"
 
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ void MaterialOption::add_to(CLI::App& app) {
                if (materials_.empty()) materials_.push_back(io::material_named(list));  // nothing, which is no name
            },
            "Materials in place of those of the state, in their order: built-in ones (analyze materials lists them), or files "
-           "NAME.json; a state that names none is taken for alumina, with a warning")
+           "NAME.json; a state that names none needs it")
         ->type_name("NAME,...");
 }
 
@@ -48,11 +48,8 @@ State MaterialOption::state_from(io::Document document) const {
     for (const Material& material : materials_)
         for (const std::string& sentence : io::unknown_keys(material)) warn_once(sentence);
     State state = io::state_from(std::move(document));
-    const bool assumed = std::ranges::any_of(state.materials, io::is_assumed);
-    if (assumed && !warned_ && warn_) {
-        warn_(place + ": names no material, and alumina is assumed" + say_what);
-        warned_ = true;
-    }
+    if (state.particles.size() > 0 && std::ranges::any_of(state.materials, io::is_assumed))
+        throw io::PlacedError(place + ": names no material" + say_what);
     check(state, place);
     return state;
 }

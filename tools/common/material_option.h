@@ -15,13 +15,12 @@ class App;
 
 namespace kiln::cli {
 
-/// A state that names no material is read as alumina, and carries a mark, "assumed", through all programs. Those that need
-/// constants say so once, unless --material says what it is.
+/// A state that names no material has to be told what it is by programs that need its constants; the others let it pass.
 class MaterialOption {
    public:
     void add_to(CLI::App& app);
 
-    /// Who is told that a material is assumed; nobody by default.
+    /// Who is told what is to be known of a material; nobody by default.
     void warn_by(std::function<void(const std::string& sentence)> warn) { warn_ = std::move(warn); }
 
     /// What will be done with the materials: state_from() refuses those that lack a constant of it, with all that they lack, before
@@ -29,7 +28,7 @@ class MaterialOption {
     void needed_for(std::vector<physics::Use> uses) { uses_ = std::move(uses); }
 
     /// The state of a document: with the materials of --material in place of its own, in the same order, where there are any.
-    /// Throws PlacedError as io::state_from() does, and where their number is another.
+    /// Throws PlacedError as io::state_from() does, where their number is another, and where neither names any.
     State state_from(io::Document document) const;
 
    private:
