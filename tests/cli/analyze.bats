@@ -170,10 +170,80 @@ modulus_line() {
     assert_equal "$(value '[.standard_errors.b, .covariance] | tostring')" '[null,null]'
     assert_equal "$stderr" "analyze fit: warning: knudsen: as many points as parameters, so the standard errors are unknown"
     run -0 --separate-stderr "$ANALYZE" fit --law all two.jsonl
-    assert_equal "$stderr" "analyze fit: warning: knudsen, power, pabst, linear: as many points as parameters, so the standard errors are unknown"
+    assert_equal "${stderr_lines[0]}" "analyze fit: warning: knudsen, power, pabst, linear: as many points as parameters, so the standard errors are unknown"
+    assert_equal "${#stderr_lines[@]}" 2
     head -1 two.jsonl >one.jsonl
     run -1 "$ANALYZE" fit one.jsonl
     assert_output --partial "only 1 point"
+}
+
+@test "analyze fit: laws are ranked only where the points are enough, and what the points do not tell is said" {
+    # Knudsen's law with a scatter of its own: four points cannot tell a law of two parameters from one of one.
+    for pair in 0.67:111.3 0.71:130.1 0.79:178.2 0.88:255.9; do modulus_line "${pair%:*}" "${pair#*:}e9" null; done >four.jsonl
+    run -0 --separate-stderr "$ANALYZE" fit --law all four.jsonl
+    assert_equal "$stderr" "analyze fit: warning: the laws are not ranked: by AICc a law of 2 parameters takes 5 points or more to be compared, and there are 4 (knudsen, power, pabst, linear)"
+    jq -se 'all(.rank == null and .aicc_difference == null)' <<<"$output"
+    assert_equal "$(jq -sc 'map(.law)' <<<"$output")" '["knudsen","coble-kingery","gibson-ashby","power","pabst","linear"]'
+    for density in 0.5 0.6 0.7 0.8 0.9 0.95; do
+        modulus_line $density "$(awk -v d=$density 'BEGIN { printf "%.12g", 4e11 * exp(-3.95 * (1 - d)) * (1 + 0.004 * sin(100 * d)) }')" null
+    done >six.jsonl
+    run -0 --separate-stderr "$ANALYZE" fit --law all six.jsonl
+    assert_equal "$stderr" ""
+    assert_equal "$(jq -sc 'map(.rank)' <<<"$output")" '[1,2,3,4,5,6]'
+    jq -se 'map(.aicc) as $a | all(.[]; .aicc_difference == .aicc - $a[0]) and .[0].law == "knudsen" and .[0].not_determined == []' <<<"$output"
+    # Three densities much alike: E0 is far from them, and its interval says nothing.
+    for pair in 0.60:60 0.61:67 0.62:61; do modulus_line "${pair%:*}" "${pair#*:}e9" null; done >alike.jsonl
+    run -0 --separate-stderr "$ANALYZE" fit alike.jsonl
+    jq -e '.not_determined == ["E0", "b"] and (.dense_modulus_interval | .[1] - .[0] > 1e12) and .dense_modulus_error > 0' <<<"$output"
+    run -0 --separate-stderr "$ANALYZE" fit --table alike.jsonl
+    assert_equal "$(grep -o "not determined" <<<"$output" | wc -l)" 2
+    run -0 --separate-stderr bash -c 'for x in 1 9; do echo "{\"format\":\"x\",\"a\":$x,\"b\":5.$x,\"material\":\"ice\"}"; done | "$ANALYZE" mean --table'
+    assert_regex "${lines[1]}" "ice +a .* not determined$"
+    assert_regex "${lines[2]}" "ice +b .* -$"
+    run -0 --separate-stderr bash -c 'for x in 1 2; do echo "{\"format\":\"x\",\"a\":10$x,\"b\":$x}"; done | "$ANALYZE" mean'
+    jq -e '.not_determined == ["b"] and (.interval.b | length == 2) and .material == null' <<<"$output"
+}
+
+@test "every table shows the material, and a test where its Poisson's ratio is from" {
+    echo '{"name":"spinel","young_modulus":2.7e11,"poisson_ratio":0.26,"density":3580,"surface_energy":1.0}' >spinel.json
+    "$SINTER" green -q -n 300 --method affine --compact-to 0.62 --aspect 6:1:1 --material spinel.json --seed 1 -o green.kiln
+    "$BONDIFY" -q green.kiln -o bonded.kiln
+    "$BEND" -q --cycles 1 bonded.kiln -o bend.json
+    "$BEND" -q --tensile-strength 500MPa bonded.kiln -o broken.json
+    "$ANALYZE" modulus bend.json >modulus.json
+    jq -e '.material == "spinel" and .poisson_ratio == 0.26 and .poisson_ratio_source == "material spinel"' bend.json
+    jq -e '.material == "spinel" and .poisson_ratio == 0.26 and .poisson_ratio_source == "material spinel" and .standard_error == null
+           and .confidence_interval == null' modulus.json
+    run -0 --separate-stderr "$ANALYZE" modulus --poisson-ratio 0.3 bend.json
+    jq -e '.poisson_ratio == 0.3 and .poisson_ratio_source == "--poisson-ratio"' <<<"$output"
+    while read -r subcommand input; do
+        run -0 --separate-stderr "$ANALYZE" $subcommand --table -q $input
+        assert_regex "${lines[0]}" "(^| )material( |$)"
+        assert_regex "${lines[1]}" "(^| )spinel( |$)"
+    done <<'END'
+info bonded.kiln
+density green.kiln
+bonds bonded.kiln
+elastic bonded.kiln
+elastic --model voxel --voxels 2 bonded.kiln
+conductivity --conductivity 30W/m/K bonded.kiln
+conductivity --conductivity 30W/m/K --model voxel --voxels 2 bonded.kiln
+modulus bend.json
+strength broken.json
+fit --law gibson-ashby modulus.json
+mean modulus.json
+END
+    # No curve of alumina over another solid.
+    run -0 --separate-stderr "$ANALYZE" fit --law gibson-ashby modulus.json
+    jq -e '.material == "spinel" and .references == [] and .points[0].test == "bending"' <<<"$output"
+    run -0 --separate-stderr "$ANALYZE" fit --law gibson-ashby <("$ANALYZE" elastic bonded.kiln)
+    jq -e '.points[0].test == "cell"' <<<"$output"
+    jq -c '.material = "alumina"' modulus.json >alumina.json
+    run -0 --separate-stderr "$ANALYZE" fit --law gibson-ashby alumina.json
+    jq -e '.references | length == 3' <<<"$output"
+    run -0 --separate-stderr "$ANALYZE" fit --law gibson-ashby alumina.json modulus.json
+    jq -e '.references == []' <<<"$output"
+    assert_equal "$stderr" "analyze fit: warning: the points are not all of one material (alumina, spinel)"
 }
 
 @test "analyze fit, modulus: the wrong kind of document is named" {

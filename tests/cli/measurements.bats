@@ -302,7 +302,10 @@ measured() { # moduli of Knudsen's law, with errors of 1 %
     assert_equal "$(value '[.weighting, (.points | length), (.band.relative_density | length)] | tostring')" '["standard errors",8,41]'
     jq -e '.band | [.young_modulus, .confidence, .prediction] | transpose | all(.[2][0] <= .[1][0] and .[1][0] <= .[0] and .[0] <= .[1][1])' <<<"$output"
     jq -e '.confidence_intervals.b | .[0] < 3.95 and 3.95 < .[1]' <<<"$output"
+    jq -e '.material == null and .references == [] and .points[0].test == "measured"' <<<"$output" # nothing says that it is alumina
+    run -0 "$ANALYZE" fit --material alumina measured.csv
     near "$(value '.references[0].young_modulus[-1]')" 4.1e11 1e-12
+    assert_equal "$(value .material)" alumina
 }
 
 @test "analyze fit: laws are compared, the best first, and measurements lie beside" {
@@ -311,10 +314,10 @@ measured() { # moduli of Knudsen's law, with errors of 1 %
     assert_equal "$(jq -r .law <<<"${lines[0]}")" knudsen
     assert_equal "$(jq -sc 'map(.aicc) | . == sort' <<<"$output")" true
     assert_equal "${#lines[@]}" 6
-    jq -e '.data.rms_deviation < 1e-6' <<<"${lines[0]}"
-    deviation=$(jq .data.rms_deviation <<<"${lines[5]}")
+    jq -e '.data | .relative_rms_deviation < 1e-6 and .rms_deviation < 4e5' <<<"${lines[0]}"
+    deviation=$(jq '100 * .data.relative_rms_deviation' <<<"${lines[5]}")
     run -0 "$ANALYZE" fit --law all --data measured.csv --table measured.csv
-    assert_line --index 0 --regexp "rms deviation of data$"
+    assert_line --index 0 --regexp "rms deviation of data, [GM]Pa +the same, %$"
     near "$(awk '{ print $NF }' <<<"${lines[6]}")" "$deviation" 0.01
     run -0 "$ANALYZE" fit --law power,pabst --table measured.csv
     assert_line --index 0 --partial "Pc"
@@ -344,4 +347,23 @@ measured() { # moduli of Knudsen's law, with errors of 1 %
     jq -e '.warnings | length == 1 and (.[0] | contains("the strength lies above"))' <<<"$output"
     run -1 --separate-stderr "$ANALYZE" strength --span 20mm bars.csv
     assert_regex "$stderr" "below 2 it is a block"
+}
+
+@test "analyze modulus, strength: --material names what a table is of; its Poisson's ratio enters, and the result says where it is from" {
+    unloading >bar.csv
+    echo '{"name":"zirconia","poisson_ratio":0.31}' >zirconia.json
+    run -0 --separate-stderr "$ANALYZE" modulus "${SIZE[@]::6}" bar.csv
+    assert_equal "$(value '[.material, .poisson_ratio, .poisson_ratio_source] | tostring')" '[null,0.23,"usual value, no material says it"]'
+    run -0 --separate-stderr "$ANALYZE" modulus "${SIZE[@]::6}" --material zirconia.json bar.csv
+    assert_equal "$(value '[.material, .poisson_ratio, .poisson_ratio_source] | tostring')" '["zirconia",0.31,"material zirconia"]'
+    near "$(value .shear_correction)" 1.03144 1e-9 # 1 + 2.4 * 1.31 * 0.01
+    run -0 --separate-stderr "$ANALYZE" modulus --shear none "${SIZE[@]::6}" bar.csv
+    assert_equal "$(value '[.poisson_ratio, .poisson_ratio_source] | tostring')" '[null,null]'
+    jq -e '.standard_error > 0' <<<"$output" # a measured curve scatters
+    printf 'strength (MPa)\n310\n352\n371\n388\n402\n' >strengths.csv
+    run -0 --separate-stderr "$ANALYZE" strength --material zirconia.json --table strengths.csv
+    assert_regex "${lines[1]}" "^ *zirconia "
+    echo '{"format":"dem-bend","version":1}' >bend.json
+    run -1 --separate-stderr "$ANALYZE" modulus --material zirconia.json bend.json
+    assert_regex "$stderr" "is no table, for which --material has no meaning"
 }

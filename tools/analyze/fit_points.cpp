@@ -17,6 +17,13 @@ const io::ColumnNames modulus_names{
     "modulus of elasticity", "modulus$", "e-modulus", "e modulus", "e_modulus", "emodulus", "e-modul", "e modul", "e_modul",
     "emodul", "elastizit\u00e4tsmodul", "e$"};
 
+/// How a modulus was found.
+std::string test_of(const io::Document& document) {
+    if (document.header["format"] == "dem-elastic")
+        return document.header.value("model", Json()) == "voxel" ? "voxels" : "cell";
+    return document.header.value("method", Json()) == "experiment" ? "measured" : "bending";
+}
+
 }  // namespace
 
 void add_point(Points& points, const io::Document& document) {
@@ -29,9 +36,12 @@ void add_point(Points& points, const io::Document& document) {
     points.error.push_back(has_error ? number_at(document, "standard_error", 0.0) : std::nan(""));
     const bool has_law = document.header.contains("bond_law") && document.header["bond_law"].is_string();
     points.bond_law.push_back(has_law ? document.header["bond_law"].get<std::string>() : "");
+    points.test.push_back(test_of(document));
+    const Json material = document.header.value("material", Json());
+    points.material.push_back(material.is_string() ? material : Json());
 }
 
-void add_table_points(Points& points, const std::string& file) {
+void add_table_points(Points& points, const std::string& file, const TableMaterial& material) {
     const io::CsvTable table(file);
     std::optional<std::vector<double>> porosity = table.column({"porosity", "porosit\u00e4t"}, io::Dimension::fraction);
     if (!porosity) {
@@ -53,13 +63,15 @@ void add_table_points(Points& points, const std::string& file) {
         points.modulus.push_back(modulus[row]);
         points.error.push_back(error ? (*error)[row] : std::nan(""));
         points.bond_law.emplace_back();
+        points.test.push_back("measured");
+        points.material.push_back(material.name());
     }
 }
 
-Points read_points(const std::vector<std::string>& files) {
+Points read_points(const std::vector<std::string>& files, const TableMaterial& material) {
     Points points;
     for_each_input(files, [&](const io::Document& document) { add_point(points, document); },
-                   [&](const std::string& file) { add_table_points(points, file); });
+                   [&](const std::string& file) { add_table_points(points, file, material); });
     return points;
 }
 
@@ -68,7 +80,9 @@ Json points_json(const Points& points) {
     for (std::size_t point = 0; point < points.modulus.size(); ++point) {
         list.push_back({{"porosity", points.porosity[point]},
                         {"young_modulus", points.modulus[point]},
-                        {"standard_error", std::isnan(points.error[point]) ? Json() : Json(points.error[point])}});
+                        {"standard_error", std::isnan(points.error[point]) ? Json() : Json(points.error[point])},
+                        {"test", points.test[point]},
+                        {"material", points.material[point]}});
         if (!points.bond_law[point].empty()) list.back()["bond_law"] = points.bond_law[point];
     }
     return list;

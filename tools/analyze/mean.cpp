@@ -10,6 +10,7 @@
 #include "io/state_io.h"
 #include "tools/analyze/analyze.h"
 #include "tools/analyze/report.h"
+#include "tools/analyze/results.h"
 #include "tools/common/each_state.h"
 
 namespace kiln::analyze {
@@ -19,6 +20,8 @@ namespace {
 constexpr const char* mean_footer =
     "Keys of the result:\n"
     "  documents, confidence\n"
+    "  material             names in one text; null where no document says it\n"
+    "  not_determined       keys whose interval reaches farther than their mean is large\n"
     "  mean, standard_deviation, standard_error, interval\n"
     "                       objects with the keys that are numbers in all documents: deviation and error\n"
     "                       of the n values, with n - 1, and the interval of the mean by Student's t\n\n"
@@ -26,9 +29,11 @@ constexpr const char* mean_footer =
     "  analyze mean --table moduli.json\n"
     "  analyze density trajectory.kiln | analyze mean | jq .interval.coordination_number";
 
-const std::vector<Column> mean_columns{{"quantity", "quantity", ""}, {"documents", "n", ""},
+const std::vector<Column> mean_columns{{"material", "material", ""},
+                                       {"quantity", "quantity", ""}, {"documents", "n", ""},
                                        {"mean", "mean", ""},         {"lower", "lower", ""},
-                                       {"upper", "upper", ""},       {"standard_deviation", "deviation", ""}};
+                                       {"upper", "upper", ""},       {"standard_deviation", "deviation", ""},
+                                       {"note", "note", ""}};
 
 /// The numbers at the top of all documents, in the order of the first one.
 class Values {
@@ -46,14 +51,17 @@ class Values {
             list.push_back(io::number_from(value, key, std::numeric_limits<double>::lowest()));
         }
         values_ = std::move(left);
+        headers_.push_back({{"material", document.header.value("material", Json())}});
         ++documents_;
     }
 
     std::size_t documents() const { return documents_; }
+    Json material() const { return joined_materials(headers_); }
     const std::map<std::string, std::vector<double>>& each() const { return values_; }
 
    private:
     std::map<std::string, std::vector<double>> values_;
+    std::vector<Json> headers_;  // of each its material
     std::size_t documents_ = 0;
 };
 
@@ -71,17 +79,21 @@ Json row_of(const std::string& key, const std::vector<double>& values) {
     row["standard_error"] = error;
     row["lower"] = spread.mean - reach;
     row["upper"] = spread.mean + reach;
+    row["undetermined"] = deviation > 0.0 && says_nothing(spread.mean, reach);
     return row;
 }
 
 Json document_of(const Values& values) {
     Json document{{"format", "dem-mean"}, {"version", io::format_version}, {"documents", values.documents()},
                   {"confidence", confidence}};
+    document["material"] = values.material();
+    document["not_determined"] = Json::array();
     for (const char* key : {"mean", "standard_deviation", "standard_error", "interval"}) document[key] = Json::object();
     for (const auto& [key, list] : values.each()) {
         const Json row = row_of(key, list);
         for (const char* what : {"mean", "standard_deviation", "standard_error"}) document[what][key] = row[what];
         document["interval"][key] = list.size() < 2 ? Json() : Json::array({row["lower"], row["upper"]});
+        if (row.value("undetermined", false)) document["not_determined"].push_back(key);
     }
     return document;
 }
@@ -105,7 +117,12 @@ int mean(int argc, char** argv) {
     if (values.each().empty()) throw Error("the results have no number in common");
     Report report(common, table, mean_columns);
     if (table)
-        for (const auto& [key, list] : values.each()) report.add(row_of(key, list));
+        for (const auto& [key, list] : values.each()) {
+            Json row = row_of(key, list);
+            row["material"] = values.material();
+            if (row.value("undetermined", false)) row["note"] = not_determined;
+            report.add(std::move(row));
+        }
     else
         report.add(document_of(values));
     report.finish();
