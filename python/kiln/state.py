@@ -55,7 +55,7 @@ class State(Document):
         position: centres, N x 3, m
         radius: N, m, or one for all
         lengths: of the box along x, y and z, m; origin: its lower corner, m; periodic: which of its faces are
-        material: its constants (docs/dem-state.5); without them the programs say that they take alumina
+        material: its constants (docs/dem-state.5); without them programs that need them ask
         arrays: others of the particles, a row each, such as velocity, m/s
         Raises Error where rows do not fit together.
         """

@@ -18,7 +18,7 @@ ensemble() { make -C "$ROOT/workflows/ensemble" PACKINGS="$PWD/packings" TEMPERA
 
 @test "an ensemble by Make: a mean and an interval for every number and for the fit" {
     run -0 ensemble -j2
-    assert_output --partial "Means of 2 packings with their 95 % confidence intervals"
+    assert_output --partial "Means of 2 packings of alumina with their 95 % confidence intervals"
     run -0 jq -c '[length, (map(.case) | unique)]' made/summary.json
     assert_output '[18,["1100C","1250C","fit, knudsen"]]'
     # Two values a and b: mean (a + b)/2, s = |a - b|/sqrt(2), t = 12.7062 for one degree of freedom: the interval reaches 6.3531 |a - b|.

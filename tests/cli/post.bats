@@ -92,3 +92,63 @@ for document in kiln.read("mixed.kiln"):
     run -1 --separate-stderr "$PYTHON" copy.py <short.kiln
     [[ $stderr == *"bytes belong behind the header, "*" are there"* ]]
 }
+
+# words PICTURE.svg: the texts of a figure, a line each.
+words() { grep -oP '(?<=<text)[^>]*>\K[^<]+' "$1"; }
+
+figure() { "$PYTHON" "$ROOT/workflows/post/figure_$1.py" "${@:2}"; }
+
+@test "figures say what they look at: temperatures of the firing, how moduli were found, literature of the material only" {
+    echo '{"name":"spinel","young_modulus":2.7e11,"poisson_ratio":0.26,"surface_energy":1.0,"atomic_volume":8.47e-30,"grain_boundary_diffusion":{"prefactor":1.3e-8,"activation_energy":475e3}}' >spinel.json
+    "$SINTER" green -q -n 500 --density 0.43 --aspect 6:1:1 --material spinel.json -o green.kiln
+    "$SINTER" -q --schedule "25C 10K/min 1000C 1min" --history fired.jsonl -o fired.kiln green.kiln
+    "$SINTER" -q --temperature 1200C --to-density 0.7,0.85 --history held.jsonl -o held.kiln green.kiln
+    run -0 figure density fired.jsonl fired.kiln -o fired.svg
+    run -0 words fired.svg
+    assert_line --regexp "^Time at [0-9]+ to 1000 °C, s$"
+    run -0 figure density held.jsonl held.kiln -o held.svg
+    run -0 words held.svg
+    assert_line "Time at 1200 °C, s"
+    "$BONDIFY" -q held.kiln -o bonded.kiln
+    "$ANALYZE" elastic bonded.kiln >cell.json
+    "$BEND" -q --cycles 1 bonded.kiln | "$ANALYZE" modulus -q >bending.json
+    "$ANALYZE" fit -q --law gibson-ashby cell.json >fit.json
+    run -0 figure modulus fit.json -o cell.svg
+    run -0 words cell.svg
+    assert_line "periodic cell"
+    refute_output --partial "bending"
+    refute_output --partial "alumina"
+    assert_output --partial "of spinel"
+    "$ANALYZE" fit -q --law gibson-ashby cell.json bending.json >fit.json
+    run -0 figure modulus fit.json -o both.svg
+    run -0 words both.svg
+    assert_line "periodic cell"
+    assert_line "simulated bending"
+    "$ANALYZE" fit -q --law gibson-ashby <(jq -c '.material = "alumina"' bending.json) >fit.json
+    run -0 figure modulus fit.json -o alumina.svg
+    run -0 words alumina.svg
+    assert_output --partial "Knudsen, alumina"
+}
+
+@test "a figure of the wrong kind of document is one sentence" {
+    "$SINTER" green -q -n 60 --method affine --compact-to 0.6 -o state.kiln
+    printf '{"format":"dem-bend","version":1}\n' >bend.json
+    : >empty.json
+    head -c 300 state.kiln >spoilt.kiln
+    for name in modulus kinetics law fired bend bonds density grains states; do
+        for file in state.kiln bend.json empty.json spoilt.kiln absent.json; do
+            inputs=("$file")
+            case $name in
+            bend | density) inputs=("$file" "$file") ;;
+            states) [[ $file != state.kiln ]] || continue ;;
+            esac
+            run -1 --separate-stderr figure $name "${inputs[@]}" -o figure.svg
+            assert_equal "$output" ""
+            assert_equal "${#stderr_lines[@]}" 1
+            assert_regex "$stderr" "^figure_$name.py: $file"
+            assert [ ! -e figure.svg ]
+        done
+    done
+    run -1 --separate-stderr figure modulus state.kiln -o figure.svg
+    assert_equal "$stderr" "figure_modulus.py: state.kiln, document 1: is dem-state, expected dem-fit, which analyze fit writes"
+}

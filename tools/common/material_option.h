@@ -39,7 +39,6 @@ class MaterialOption {
     std::vector<physics::Use> uses_;
     mutable std::set<std::string> told_;
     std::function<void(const std::string&)> warn_;
-    mutable bool warned_ = false;
 };
 
 /// for_each_state() for a program with --material.

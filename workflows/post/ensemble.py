@@ -57,8 +57,9 @@ def entries(run, packings, temperatures, analyze):
     return table
 
 
-def as_text(table, packings):
-    lines = [f"Means of {packings} packings with their {100 * CONFIDENCE:.0f} % confidence intervals (Student's t)"]
+def as_text(table, packings, material):
+    of = material or "a material that is not named"
+    lines = [f"Means of {packings} packings of {of} with their {100 * CONFIDENCE:.0f} % confidence intervals (Student's t)"]
     for case in dict.fromkeys(each["case"] for each in table):
         lines += ["", f"{case:26}{'mean':>12}{'interval':>27}{'deviation':>12}"]
         for each in table:
@@ -87,7 +88,8 @@ def main():
         writer = csv.DictWriter(file, table[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(table)
-    given.output.write_text(as_text(table, len(given.packings)), encoding="utf-8")
+    material = kiln.read(given.run / given.packings[0] / given.temperatures[0] / "density.json")[0]["material"]
+    given.output.write_text(as_text(table, len(given.packings), material), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle
 
 import style
-import kiln
 from dem_view import bent_positions
 from style import NM, pyplot
 
@@ -59,8 +58,10 @@ def draw(state, test):
 
 def main():
     given = style.arguments(__doc__, ("test", "result of bend"), ("states", "bent bar of the same test"))
-    state = kiln.read(given.states[0])[0]
-    style.save(draw(state, kiln.read(given.test)[0]), given.output)
+    state = style.documents(given.states[0], "dem-state", "which bend --states writes", "bonds.normal_force",
+                            "particles.displacement")[0]
+    test = style.documents(given.test, "dem-bend", "which bend writes", "height", "span", "length", "punch_radius")[0]
+    style.save(draw(state, test), given.output)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,8 @@ def draw(cases):
 
 def main():
     given = style.arguments(__doc__, ("states", "files with bonded states"))
-    states = [state for path in given.states for state in kiln.read(path)]
+    states = [state for path in given.states
+              for state in style.documents(path, "dem-state", "which bondify writes", "bonds.radius")]
     style.save(draw([(kiln.relative_density(state), state["bonds"]["radius"]) for state in states]), given.output)
 
 

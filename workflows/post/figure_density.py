@@ -2,7 +2,6 @@
 import style
 import kiln
 from style import pyplot
-from units import ZERO_CELSIUS
 
 
 def draw(steps, picks):
@@ -16,16 +15,16 @@ def draw(steps, picks):
     low, high = steps[0]["relative_density"], max(steps[-1]["relative_density"], *(density for _, density in picks))
     axes.set_xlim(0, 1.06 * max(time for time, _ in picks))
     axes.set_ylim(low - 0.02, high + 0.03)
-    celsius = steps[-1]["temperature"] - ZERO_CELSIUS
-    axes.set_xlabel(f"Time at {celsius:.0f} °C, s")
+    axes.set_xlabel(f"Time at {style.temperature_text([step['temperature'] for step in steps])}, s")
     axes.set_ylabel("Relative density")
     return figure
 
 
 def main():
     given = style.arguments(__doc__, ("history", "history of sinter, JSON lines"), ("states", "files with the picked states"))
-    steps = kiln.read(given.history)
-    picks = [(state["time"], kiln.relative_density(state)) for path in given.states for state in kiln.read(path)]
+    steps = style.documents(given.history, None, "the history of sinter", "time", "relative_density", "temperature")
+    picks = [(state["time"], kiln.relative_density(state)) for path in given.states
+             for state in style.documents(path, "dem-state", "which sinter writes", "particles.radius", "time")]
     style.save(draw(steps, picks), given.output)
 
 

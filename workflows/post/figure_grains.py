@@ -8,9 +8,10 @@ from style import pyplot
 
 def read(path):
     """The lines of a history that have grain sizes."""
-    steps = [step for step in kiln.read(path) if "mean_grain_diameter" in step]
+    steps = style.documents(path, None, "the history of sinter", "relative_density")
+    steps = [step for step in steps if "mean_grain_diameter" in step]
     if not steps:
-        raise SystemExit(f"figure_grains.py: {path}: no line has mean_grain_diameter; sinter writes it with --coarsening")
+        style.refuse(f"{path}: no line has mean_grain_diameter; sinter writes it with --coarsening")
     return steps
 
 

@@ -2,7 +2,6 @@
 import numpy
 
 import style
-import kiln
 from style import pyplot
 
 ZERO_CELSIUS = 273.15  # K
@@ -61,7 +60,7 @@ def draw(result):
 
 def main():
     given = style.arguments(__doc__, ("result", "JSON of analyze kinetics"))
-    style.save(draw(kiln.read(given.result)[0]), given.output)
+    style.save(draw(style.documents(given.result, "dem-kinetics", "which analyze kinetics writes", "curves")[0]), given.output)
 
 
 if __name__ == "__main__":

@@ -36,6 +36,9 @@ def draw(folders):
 
 def main():
     given = style.arguments(__doc__, ("folders", "packings of workflows/validate"))
+    for folder in given.folders:
+        for name in ("voxel", "solid", "series"):
+            style.documents(os.path.join(folder, f"{name}.json"), "dem-elastic", "which workflows/validate writes", "young_modulus")
     style.save(draw(given.folders), given.output)
 
 

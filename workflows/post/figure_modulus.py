@@ -2,7 +2,6 @@
 import numpy
 
 import style
-import kiln
 from style import GPA, pyplot
 
 DASHES = ((0, (5, 3)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
@@ -21,12 +20,13 @@ def law_text(fit):
 
 SHAPE = 0.12  # of the modulus: what the unknown shape of a neck of the same mass makes (docs/theory.md)
 BONDS_OF = {"solid": "necks of the sintering law", "series": "bonds of Eq. 2\u20134"}
+TESTS = {"bending": "simulated bending", "cell": "periodic cell", "voxels": "finite elements of the cell", "measured": "measured"}
 
 
 def draw_references(axes, fit, density):
     """The curves of the literature; returns the highest modulus, Pa."""
     top = 0.0
-    for reference, dashes in zip(fit["references"], DASHES):
+    for reference, dashes in zip(fit.get("references") or (), DASHES):
         curve = numpy.array([numpy.nan if value is None else value for value in reference["young_modulus"]])
         top = max(top, numpy.nanmax(curve))
         axes.plot(density, curve / GPA, color=style.REFERENCE, linewidth=1.2, linestyle=dashes,
@@ -38,6 +38,14 @@ def draw_points(axes, points, colour, mark, label):
     error = [(point["standard_error"] or 0.0) / GPA for point in points]
     axes.errorbar([1 - point["porosity"] for point in points], [point["young_modulus"] / GPA for point in points], error, fmt=mark,
                   color=colour, markersize=5.5, capsize=3, label=label, zorder=3)
+
+
+def tests_of(points):
+    """The points by how their moduli were found, in words."""
+    found = {}
+    for point in points:
+        found.setdefault(TESTS.get(point.get("test"), "points"), []).append(point)
+    return found
 
 
 def draw_fit(axes, fit, bonds, colour, mark):
@@ -53,7 +61,8 @@ def draw_fit(axes, fit, bonds, colour, mark):
         low, high = numpy.array(band["confidence"]).T / GPA
         axes.fill_between(density, low, high, color=colour, alpha=0.18, linewidth=0, label="95 % confidence of the fit")
     axes.plot(density, curve / GPA, color=colour, label=f"fit, {fit['law']}: {law_text(fit)}")
-    draw_points(axes, fit["points"], colour, mark, f"bending, {bonds}" if bonds else "simulated bending")
+    for (test, points), shape in zip(tests_of(fit["points"]).items(), (mark, "D", "v", "s")):
+        draw_points(axes, points, colour, shape, f"{test}, {bonds}" if bonds else test)
     return max(numpy.max(curve) * (1 + SHAPE if necks else 1.0), max(point["young_modulus"] for point in fit["points"]))
 
 
@@ -76,14 +85,16 @@ def draw(fits):
     axes.legend(loc="upper left", fontsize="small")
     axes.set_xlim(density[0], 1.0)
     axes.set_ylim(0, 1.05 * top / GPA)
-    axes.set_xlabel("Relative density, 1 \u2212 P")
+    material = fits[0].get("material")
+    axes.set_xlabel(f"Relative density, 1 \u2212 P{f', of {material}' if material else ''}")
     axes.set_ylabel("Young's modulus, GPa")
     return figure
 
 
 def main():
     given = style.arguments(__doc__, ("fits", "results of analyze fit: one, or those of necks and of bonds of Eq. 2-4"))
-    style.save(draw([kiln.read(path)[0] for path in given.fits]), given.output)
+    fits = [style.documents(path, "dem-fit", "which analyze fit writes", "band.young_modulus", "points")[0] for path in given.fits]
+    style.save(draw(fits), given.output)
 
 
 if __name__ == "__main__":

@@ -86,7 +86,8 @@ def draw(states):
 
 def main():
     given = style.arguments(__doc__, ("states", "files with states; the first and the last of all are drawn"))
-    style.save(draw([state for path in given.states for state in kiln.read(path)]), given.output)
+    style.save(draw([state for path in given.states
+                     for state in style.documents(path, "dem-state", "which sinter writes", "particles.position")]), given.output)
 
 
 if __name__ == "__main__":

@@ -11,19 +11,19 @@ import dem_view
 import style
 import kiln
 from convert_common import ConvertError
-from figure_modulus import SHAPE
+from figure_modulus import SHAPE, tests_of
 from style import GPA
 
 FIGURES = (
     ("states", "The packing before and after",
      "Shaded spheres, at one scale; what sticks out of one face of the periodic box is missing at the other."),
     ("density", "Densification",
-     "Relative density against time at the temperature of sintering, with the picked states (Fig. 2 of the paper)."),
+     "Relative density against time, with the picked states (Fig. 2 of the paper)."),
     ("bonds", "Bonds", "Distribution of the bond radii at each density (Fig. 4)."),
     ("bend", "Bending", "A slice of the bent bar: every line is a bond, coloured by the force along it (Fig. 5)."),
     ("modulus", "Young's modulus",
-     "Moduli of the bending tests, with necks of the sintering law and with the paper's bonds, and curves of the literature "
-     "(Fig. 6). The band of the necks is what their unknown shape makes."),
+     "Moduli with necks of the sintering law and with the paper's bonds, and the literature's curves where they are of the body's "
+     "material (Fig. 6). The band of the necks is what their unknown shape makes."),
 )
 PAGE_SIZE, REST_SIZE = 15_000_000, 1_300_000  # bytes of the page, and of what is neither picture nor state in it: mostly three.js
 KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
@@ -130,8 +130,9 @@ def modulus_plot(fits):
             for edge, factor in (("low", 1 - SHAPE), ("high", 1 + SHAPE)):
                 line[edge] = [factor * value for value in line["y"]]
         series.append(line)
-        density, modulus = [1 - point["porosity"] for point in points], [point["young_modulus"] for point in points]
-        series.append(curve(f"bending, {name}", density, modulus, points=True, colour=colour))
+        for test, alike in tests_of(points).items():
+            density, modulus = [1 - point["porosity"] for point in alike], [point["young_modulus"] for point in alike]
+            series.append(curve(f"{test}, {name}", density, modulus, points=True, colour=colour))
     return {
         "picture": "modulus",
         "x": "Relative density",
@@ -177,21 +178,23 @@ def table2(entries):
 
 def moduli(tests, fit):
     rows = [("", [
-        f"{test['relative_density']:.3f}", f"{test['young_modulus'] / GPA:.1f}", "–" if test["standard_error"] is None else
-        "&lt; 0.001" if test["standard_error"] < 1e-3 * GPA else f"{test['standard_error'] / GPA:.2g}", test["points"],
+        html.escape(test.get("material") or "–"), f"{test['relative_density']:.3f}", f"{test['young_modulus'] / GPA:.1f}",
+        f"{test['slenderness']:.1f}", test["points"],
         html.escape(test.get("bond_law", "–")),
         html.escape(test.get("method", "–"))
     ]) for test in tests]
     errors = fit["standard_errors"]
     numbers = "; ".join(f"{name} = {fit[name] / (GPA if name == 'E0' else 1):.4g}" + (" GPa" if name == "E0" else "") +
-                        ("" if error is None else f" ± {error / (GPA if name == 'E0' else 1):.2g}")
+                        ("" if error is None else " (not determined)" if name in fit["not_determined"] else
+                         f" ± {error / (GPA if name == 'E0' else 1):.2g}")
                         for name, error in errors.items())
     text = (
         f"<p>Law <b>{html.escape(fit['law'])}</b>, E = {html.escape(fit['formula'])} ({html.escape(fit['source'])}): "
         f"{html.escape(numbers)} "
         f"(standard errors), R² = {fit['r_squared']:.4f}, {len(fit['points'])} points.</p>")
-    head = ["relative density", "Young's modulus, GPa", "standard error, GPa", "points", "bond law", "method"]
-    return table(head, rows) + text
+    head = ["material", "relative density", "Young's modulus, GPa", "L/h", "points", "bond law", "method"]
+    warnings = list(dict.fromkeys(sentence for test in tests for sentence in test["warnings"]))
+    return table(head, rows) + text + "".join(f'<p class="note">{html.escape(sentence)}</p>' for sentence in warnings)
 
 
 def command(entry):
@@ -234,7 +237,8 @@ def page(run, kind, bent):
     commands, steps = provenance([test.get("history", []) for test in tests + necks])
     seed = next((step["seed"] for step in steps if "seed" in step), "–")
     worst = max(abs(entry["deviation"]) for entry in entries)
-    facts = (("particles", f"{bonds[0]['particles']:,}"), ("seed", seed), ("densities", f"{len(cases)}"),
+    facts = (("material", html.escape(bonds[0].get("material") or "–")), ("particles", f"{bonds[0]['particles']:,}"),
+             ("seed", seed), ("densities", f"{len(cases)}"),
              ("Table 2, worst deviation", f"{100 * worst:.1f} %"),
              ("Young's modulus", f"{necks[0]['young_modulus'] / GPA:.0f} – {necks[-1]['young_modulus'] / GPA:.0f} GPa"))
     pictures = figures(run, kind)
