@@ -20,8 +20,8 @@ printf '.TH %s 1 "" "%s" "Kiln"\n.SH NAME\n%s \\- %s\n' "${name^^}" "$version" "
 page DESCRIPTION "$program"
 if [ "$name" = sinter ]; then page 'SINTER GREEN' "$program" green; fi
 if [ "$name" = analyze ]; then
-    for command in info density bonds select modulus elastic conductivity fit mean kinetics materials; do
-        if "$program" "$command" --help >/dev/null 2>&1; then page "ANALYZE ${command^^}" "$program" "$command"; fi
+    for command in $(sed -nE '/^Subcommands/,/^$/ s/^  ([a-z]+) {2,}.*/\1/p' <<<"$help"); do
+        page "ANALYZE ${command^^}" "$program" "$command"
     done
 fi
 printf '.SH SEE ALSO\n.BR sinter (1),\n.BR bondify (1),\n.BR bend (1),\n.BR analyze (1),\n.BR dem\\-state (5)\n'

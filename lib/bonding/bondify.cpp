@@ -2,6 +2,7 @@
 #include "bonding/bondify.h"
 
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "bonding/event_queue.h"
@@ -51,6 +52,7 @@ Bonds make_bonds(const std::vector<Pair>& pairs, const std::vector<Overlap>& ove
                  const Options& options, Summary& summary) {
     Bonds bonds;
     bonds.volume = shrunk.volume;
+    summary.bond_volume = std::accumulate(shrunk.volume.begin(), shrunk.volume.end(), 0.0);
     for (std::size_t bond = 0; bond < overlaps.size(); ++bond) {
         const auto [first, second, distance] = overlaps[bond];
         const double radius1 = shrunk.radius[static_cast<std::size_t>(first)];

@@ -35,7 +35,8 @@ struct Summary {
     double mean_length = 0.0;        // m
     double coordination_number = 0;  // bond ends per particle
     std::size_t clamped = 0;         // bonds as thick as the smaller particle, with volume left over
-    double lost_volume = 0.0;        // m3, left over in those
+    double bond_volume = 0.0;        // m3, that the particles gave to their bonds
+    double lost_volume = 0.0;        // m3, left over in clamped bonds
     std::size_t thin = 0;            // bonds below the thin ratio, kept or not
     double dropped_volume = 0.0;     // m3, of thin bonds left out
     std::size_t stopped = 0;         // particles that came down to min_share of their radius

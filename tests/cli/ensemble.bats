@@ -41,7 +41,7 @@ ensemble() { make -C "$ROOT/workflows/ensemble" PACKINGS="$PWD/packings" TEMPERA
     run -0 bash -c 'head -1 results.jsonl | "$ANALYZE" mean | jq -c "[.mean.a, .standard_deviation.a, .interval.a]"'
     assert_output '[1,null,null]'
     run -0 bash -c 'head -3 results.jsonl | "$ANALYZE" mean --table'
-    assert_line --regexp '^ *a +3 +2 +-0.48414 +4.4841 +1$'
+    assert_line --regexp '^ *- +a +3 +2 +-0.48414 +4.4841 +1 +not determined$'
     run -1 "$ANALYZE" mean "$DATA/two_spheres.jsonl"
     assert_output --partial "document 1: is a state, analyze mean reads results"
     run -1 "$ANALYZE" mean /dev/null

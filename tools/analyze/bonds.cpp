@@ -22,10 +22,15 @@ constexpr const char* bonds_footer =
     "  material, time (s)    of the state\n"
     "  relative_density, particles, count, mean_diameter (m), mean_length (m)\n"
     "  bond_volume_fraction  of the solid; 0 for necks, whose solid is counted with the particles\n"
+    "  clamped_percent, lost_percent, dropped_percent, limited_percent\n"
+    "                        of bondify: clamped bonds; of the volume of all bonds, what these cannot\n"
+    "                        hold (which lowers E by a fifth to a third of that) and what --drop-thin\n"
+    "                        left out; limited necks\n"
     "  histogram             of the radii {edges (m), counts}\n"
-    "Where the bonds carry forces, as in the states that bend writes, also, tension positive:\n"
-    "  normal_force, normal_stress (force over section), fibre_stress (with the moment as if it only bent\n"
-    "                        the bond)  {mean, standard_deviation, minimum, maximum}, N and Pa\n"
+    "of bonds that carry forces, as in the states that bend writes, also, tension positive\n"
+    "  normal_force, normal_stress, fibre_stress\n"
+    "                        {mean, standard_deviation, minimum, maximum}, N and Pa: along the bond; over\n"
+    "                        its section; with the moment as if it only bent the bond\n"
     "  compressed_fraction   of the bonds\n"
     "  force_histogram       {edges (N), counts}\n\n"
     "Examples:\n"
@@ -38,7 +43,9 @@ const std::vector<Column> bonds_columns{{"material", "material", ""},
                                         {"count", "bonds", ""},
                                         {"mean_diameter", "mean diameter", "m"},
                                         {"mean_length", "mean length", "m"},
-                                        {"bond_volume_fraction", "bond fraction", ""}};
+                                        {"bond_volume_fraction", "bond fraction", ""},
+                                        {"clamped_percent", "clamped, %", ""},
+                                        {"lost_percent", "volume lost, %", ""}};
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -71,6 +78,18 @@ void add_loads(Json& result, const Bonds& bonds, std::size_t bins) {
     result["force_histogram"] = histogram_json(analysis::histogram_of(*force, bins, std::ranges::min(*force)));
 }
 
+/// What the bonds could not hold, as the last bondify said; null where it did not.
+void add_losses(Json& result, const Json& history) {
+    const auto keys = {"clamped_percent", "lost_percent", "dropped_percent", "limited_percent"};
+    for (const char* key : keys) result[key] = nullptr;
+    for (auto entry = history.rbegin(); entry != history.rend(); ++entry) {
+        if (!entry->is_object() || entry->value("tool", Json()) != "bondify" || !entry->contains("summary")) continue;
+        for (const char* key : keys)
+            if ((*entry)["summary"].contains(key)) result[key] = (*entry)["summary"][key];
+        return;
+    }
+}
+
 Json bonds_of(const State& state, std::size_t bins) {
     if (!state.bonds) throw Error("has no bonds; bondify makes them");
     const analysis::Density density = analysis::measured_density(state);
@@ -92,6 +111,7 @@ Json bonds_of(const State& state, std::size_t bins) {
                 {"mean_length", mean(bonds.length)},
                 {"bond_volume_fraction", bonds.size() == 0 ? 0.0 : in_bonds / (in_bonds + particle_volume(state.particles))},
                 {"histogram", histogram_json(analysis::histogram_of(bonds.radius, bins, 0.0))}};
+    add_losses(result, io::history_of(state));
     add_loads(result, bonds, bins);
     return result;
 }

@@ -13,6 +13,11 @@ namespace {
 
 using namespace kiln;
 
+/// A part in percent of a whole; 0 of nothing.
+double percent(double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; }
+
+double percent(std::size_t part, std::size_t whole) { return percent(static_cast<double>(part), static_cast<double>(whole)); }
+
 /// One sentence for each thing about a state that the user should know.
 void report(const bonding::Summary& summary, const bonding::Options& options, const std::string& place) {
     const auto warn = [&place](const auto&... words) {
@@ -23,12 +28,15 @@ void report(const bonding::Summary& summary, const bonding::Options& options, co
     };
     if (summary.pairs == 0) warn("no particles overlap, so there are no bonds");
     if (summary.clamped > 0)
-        warn(summary.clamped, " of ", summary.pairs, " bonds are clamped to the radius of their smaller particle; a volume of ",
-             summary.lost_volume, " m3 does not fit into them");
+        warn(summary.clamped, " of ", summary.pairs, " bonds are clamped to the radius of their smaller particle, and ",
+             percent(summary.lost_volume, summary.bond_volume),
+             " % of the volume of all bonds does not fit into them: E is lower by "
+             "a fifth to a third of that; --method necks loses none");
     if (summary.stopped > 0)
         warn(summary.stopped, " particles stopped shrinking at ", 100.0 * bonding::min_share, " % of their radius");
     if (options.drop_thin && summary.thin > 0 && options.method != bonding::Method::necks)
-        warn(summary.thin, " thin bonds are left out, and ", summary.dropped_volume, " m3 of solid with them");
+        warn(summary.thin, " thin bonds are left out, and ", percent(summary.dropped_volume, summary.bond_volume),
+             " % of the volume of all bonds with them");
     if (!summary.fills)
         warn("no factor on the necks makes their union with the particles fill the ", summary.solid_fraction,
              " of the box that the mass fills: with ", summary.neck_factor, " it fills ", summary.union_fraction,
@@ -49,6 +57,7 @@ Json necks_json(const bonding::Summary& summary, const bonding::Options& options
             {"union_fraction", summary.union_fraction},
             {"union_error", summary.union_error},
             {"limited", summary.limited},
+            {"limited_percent", percent(summary.limited, summary.pairs)},
             {"thin", summary.thin}};
 }
 
@@ -63,9 +72,13 @@ Json summary_json(const bonding::Summary& summary, const bonding::Options& optio
             {"mean_length", summary.mean_length},
             {"coordination_number", summary.coordination_number},
             {"clamped", summary.clamped},
+            {"clamped_percent", percent(summary.clamped, summary.pairs)},
+            {"bond_volume", summary.bond_volume},
             {"lost_volume", summary.lost_volume},
+            {"lost_percent", percent(summary.lost_volume, summary.bond_volume)},
             {"thin", summary.thin},
             {"dropped_volume", summary.dropped_volume},
+            {"dropped_percent", percent(summary.dropped_volume, summary.bond_volume)},
             {"stopped", summary.stopped},
             {"volume_error", summary.volume_error}};
 }

@@ -22,6 +22,15 @@ constexpr const char* green_description =
     "Makes a green body: random spheres in a periodic box at a relative density.";
 
 constexpr const char* green_footer =
+    "Keys of the summary in the state's history:\n"
+    "  method, seed            loose, affine, soft, or spheres of a list\n"
+    "  relative_density, coordination_number\n"
+    "  mean_overlap_ratio      h/2R, or h/(r1 + r2) of unequal spheres\n"
+    "  diameters               {asked, made} of {by_number, by_volume} {d10, d50, d90}, m; made also has\n"
+    "                          {mean, minimum, maximum}\n"
+    "of a list of spheres\n"
+    "  contacts, largest_overlap_ratio\n"
+    "  measure                 volume that the density refers to, as analyze density has it\n\n"
     "Examples:\n"
     "  sinter green -n 3000 --density 0.43 --aspect 6:1:1 --seed 1 -o green.kiln\n"
     "  sinter green -n 99000 | sinter --temperature 1200C --to-density 0.67 -o sintered.kiln\n"

@@ -51,6 +51,7 @@ Json summary_of(const sintering::StepRecord& record, SinterMethod method) {
                  {"temperature", record.temperature},
                  {"relative_density", record.relative_density},
                  {"strain", triple(record.strain)},
+                 {"engineering_strain", triple(record.strain.unaryExpr([](double axis) { return std::expm1(axis); }))},
                  {"stress", triple(record.stress)},
                  {"coordination_number", record.contacts.coordination_number},
                  {"mean_overlap_ratio", record.contacts.mean_overlap_ratio},
