@@ -100,6 +100,10 @@ bool is_assumed(const Material& material) {
     return carried_json(material.other, "the unknown keys of material '" + material.name + "'").value(assumed_key, Json()) == true;
 }
 
+bool names_no_material(const State& state) {
+    return state.materials.size() == 1 && state.contacts.empty() && is_assumed(state.materials.front());
+}
+
 Json material_names(const State& state) {
     std::vector<char> used(state.materials.size(), state.materials.size() == 1);
     for (const std::int32_t row : state.particles.material) used[static_cast<std::size_t>(row)] = 1;

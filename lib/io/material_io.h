@@ -23,6 +23,9 @@ Material material_from(const Json& json, const std::string& place);
 Material assumed_material();
 bool is_assumed(const Material& material);
 
+/// Whether all that a state has is that material.
+bool names_no_material(const State& state);
+
 /// What the particles of a state consist of, for results: "alumina", "alumina, zirconia"; null where the state does not say.
 Json material_names(const State& state);
 

@@ -295,8 +295,8 @@ Json header_from(const State& state) {
                      {"vectors", {{lengths[0], 0.0, 0.0}, {0.0, lengths[1], 0.0}, {0.0, 0.0, lengths[2]}}},
                      {"periodic", state.box.periodic}};
     header["materials"] = Json::array();  // stays empty where the state names none
-    for (const Material& material : state.materials)
-        if (!is_assumed(material)) header["materials"].push_back(material_json(material));
+    if (!names_no_material(state))
+        for (const Material& material : state.materials) header["materials"].push_back(material_json(material));
     for (const MaterialPair& pair : state.contacts) header["contacts"].push_back(material_pair_json(pair, state.materials));
     put_back(header, carried_json(state.other, "the unknown keys of the state"));
     header["history"] = history_of(state);

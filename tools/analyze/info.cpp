@@ -61,8 +61,8 @@ Json state_info(io::Document document) {
     entry["arrays"] = arrays;
     entry["material"] = io::material_names(state);
     entry["materials"] = Json::array();
-    for (const Material& material : state.materials)
-        if (!io::is_assumed(material)) entry["materials"].push_back(io::material_json(material));
+    if (!io::names_no_material(state))
+        for (const Material& material : state.materials) entry["materials"].push_back(io::material_json(material));
     add_history(entry, io::history_of(state));
     return entry;
 }
