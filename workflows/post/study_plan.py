@@ -32,7 +32,6 @@ TEST = ("bend", "span", "punch-radius", "max-deflection", "max-force", "cycles",
 MEASURED = ("dilatometer", "expansion", "moduli", "strengths", "span", "width", "height")
 VARY = ("size", "temperature", "material", "density", "schedule", "seeds")
 TOP = ("title", "particles", "seed", "seeds", "powder", "firing", "test", "measured", "vary")
-VARIED = {"size": "size", "temperature": "temperature", "material": "material", "density": "green density", "schedule": "firing"}
 SIZE = re.compile(r"\bSIZE\b")
 
 
@@ -72,8 +71,9 @@ def number(value, where, lowest=0.0):
 class Study:
     """What the file says, checked; paths are taken from the folder that it stands in."""
 
-    def __init__(self, path):
-        self.path, self.folder = path, path.parent
+    def __init__(self, path, analyze):
+        """analyze: the program that knows the materials."""
+        self.path, self.folder, self.analyze = path, path.parent, analyze
         try:
             with open(path, "rb") as stream:
                 said = tomllib.load(stream)
@@ -109,8 +109,7 @@ class Study:
             raise PlanError("[firing] needs a schedule, or a temperature with densities to reach there")
         if "temperature" in self.firing and "densities" not in self.firing:
             raise PlanError("[firing] has a temperature and no end: give densities, or a schedule")
-        if "size" in self.vary and not any(SIZE.search(str(self.powder.get("distribution", ""))) or key == "diameter"
-                                           for key in ("distribution", *self.powder)) and "distribution" in self.powder:
+        if "size" in self.vary and "distribution" in self.powder and not SIZE.search(str(self.powder["distribution"])):
             raise PlanError('[vary] size: write SIZE in the distribution where it belongs, as in "lognormal:SIZE:1.4"')
         for value in listed(self.firing.get("densities", list(STEPS)), "[firing] densities"):
             if number(value, "a value of [firing] densities") >= 1:
@@ -307,8 +306,7 @@ def calibration(study, material, output):
 
 
 def plan(path, output, analyze):
-    study = Study(path)
-    study.analyze = analyze
+    study = Study(path, analyze)
     bodies, cases = [], []
     start = study.powder.get("compact-to", study.powder.get("density", 0.43))
     kinetics = []
