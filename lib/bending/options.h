@@ -32,9 +32,10 @@ struct Options {
     bool allow_block = false;  // bars whose span is below twice their height
     double tensile_strength = 0.0;  // Pa, of bonds; zero: they do not break so
     double shear_strength = 0.0;    // Pa
+    double calibrate_to = 0.0;      // Pa, bending strength of the bar, for which the tensile strength is sought; zero: it is given
     double until = 0.1;             // of the greatest force: where a test to failure ends
 
-    bool to_failure() const { return tensile_strength > 0.0 || shear_strength > 0.0; }
+    bool to_failure() const { return tensile_strength > 0.0 || shear_strength > 0.0 || calibrate_to > 0.0; }
 };
 
 }  // namespace kiln::bending

@@ -1,6 +1,7 @@
 // result.h: what a bending test found, whatever its method.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ struct FailureEnergy {
     double dissipated = 0.0;  // by breaks: what was stored before each of them less what was after it
 };
 
+/// The strength of bonds that was found for a strength of the bar.
+struct Calibration {
+    double tensile_strength = 0.0;  // Pa
+    int tests = 0;                  // to failure, that it took
+};
+
 struct Result {
     Specimen specimen;
     Fixture fixture;
@@ -53,6 +60,7 @@ struct Result {
     std::size_t breaks = 0;            // of bonds, in a test to failure
     std::vector<std::int32_t> broken;  // for each bond its place in the order of breaks, from 1; 0 for a whole one
     FailureEnergy failure;
+    std::optional<Calibration> calibration;
 };
 
 /// The bar cut, its cylinders placed, the bar at rest between them, and the point of the curve without load. Throws Error where the

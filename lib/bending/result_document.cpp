@@ -36,12 +36,16 @@ void add_motion(Json& json, const DynamicRun& run, const Options& options) {
 void add_failure(Json& json, const Result& result, const Options& options) {
     const Vec3& size = result.specimen.size;
     const auto strength = [&](double force) { return physics::bending_strength(force, result.fixture.span, size[1], size[2]); };
+    const auto& found = result.calibration;
+    const double tensile = found ? found->tensile_strength : options.tensile_strength;
     json["strength"] = {{"bending_strength", strength(result.peak_force)},
                         {"peak_force", result.peak_force},
                         {"first_break", strength(result.curve[1].force)},
                         {"breaks", result.breaks},
-                        {"tensile_strength", options.tensile_strength > 0.0 ? Json(options.tensile_strength) : Json()},
+                        {"tensile_strength", tensile > 0.0 ? Json(tensile) : Json()},
                         {"shear_strength", options.shear_strength > 0.0 ? Json(options.shear_strength) : Json()},
+                        {"calibrated_to", found ? Json(options.calibrate_to) : Json()},
+                        {"tests", found ? found->tests : 1},
                         {"until", options.until}};
     json["energy"].update(Json{{"work", result.failure.work}, {"dissipated", result.failure.dissipated}});
 }

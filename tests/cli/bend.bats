@@ -119,7 +119,7 @@ PROGRAM
     run -2 "$BEND" --tensile-strength 500MPa --friction 0.1 "$BAR"
     assert_output --partial "rollers"
     run -2 "$BEND" --until 0.5 "$BAR"
-    assert_output --partial "needs --tensile-strength"
+    assert_output --partial "needs --tensile-strength, --shear-strength or --calibrate-to"
 }
 
 @test "neck is stiffer than series, series than centre" {
@@ -261,4 +261,21 @@ PROGRAM
     # Strengths come from a beam formula too.
     run -0 --separate-stderr bash -c '"$0" -q --tensile-strength 500MPa 4.kiln | "$1" strength -q' "$BEND" "$ANALYZE"
     jq -e '.warnings[0] | contains("below 4")' <<<"$output"
+}
+
+@test "--calibrate-to: the bonds get the strength with which the bar breaks as the measured one, and with it it does" {
+    cd "$BATS_TEST_TMPDIR"
+    run -0 --separate-stderr "$BEND" --calibrate-to 60MPa "$BAR"
+    jq -e '.converged and (.strength | .calibrated_to == 6e7 and .tests >= 1 and .breaks >= 1 and .shear_strength == null
+           and .tensile_strength > 6e7 and (.bending_strength / 6e7 - 1 | fabs) <= 2e-3)' <<<"$output"
+    strength=$(jq .strength.tensile_strength <<<"$output")
+    run -0 --separate-stderr "$BEND" --tensile-strength "${strength}Pa" "$BAR"
+    near "$(jq .strength.bending_strength <<<"$output")" 6e7 2e-3
+    jq -e '.strength | .calibrated_to == null and .tests == 1' <<<"$output"
+    run -2 --separate-stderr "$BEND" --calibrate-to 60MPa --tensile-strength 1GPa "$BAR"
+    run -2 --separate-stderr "$BEND" --calibrate-to 60 "$BAR"
+    assert_regex "$stderr" "has no unit"
+    run -2 --separate-stderr "$BEND" --calibrate-to 60MPa --method dynamic "$BAR"
+    run -2 --separate-stderr "$BEND" --calibrate-to 0MPa "$BAR"
+    assert_regex "$stderr" "greater than zero"
 }

@@ -94,6 +94,14 @@ END
     assert_line --regexp "^Calibrated on the dilatometer: .* Q [0-9.]+ kJ/mol"
 }
 
+@test "bonds get their strength as the page says: from toughness and flaw, or calibrated" {
+    run_page docs/strength.md
+    assert_line "3.94e+08 Pa"
+    assert_line "2.19e+10 Pa"
+    calibrated=$(grep -oP '^\[0\.79[0-9]*,\K[0-9.e+]+|^\[0\.789[0-9]*,\K[0-9.e+]+' <<<"$output")
+    near "$calibrated" 375666666.7 4e-3
+}
+
 @test "no page has commands that are not run here" {
     run -0 grep -lE '^```(sh|bash|console|shell)$' -r "$ROOT/docs" "$ROOT/README.md" "$ROOT/CONTRIBUTING.md"
     for page in "${lines[@]}"; do

@@ -1,4 +1,5 @@
 // strength_test.cpp: bars that fail bond by bond: the first break by beam theory, the sequence, and what breaking must leave alone.
+#include "bending/calibration.h"
 #include "bending/failure.h"
 
 #include <doctest/doctest.h>
@@ -221,4 +222,35 @@ TEST_CASE("failure: the same bytes for any number of threads") {
     }
     omp_set_num_threads(threads);
     CHECK(documents[0] == documents[1]);
+}
+
+TEST_CASE(
+    "calibrated: a chain's bonds get the strength sigma = F (L - l)/(pi r3) of the force that was asked for, and break there") {
+    const State state = test::make_lattice({.cells = {11, 1, 1}, .periodic = false});
+    Options options;
+    options.span = 8e-7;
+    options.calibrate_to = 40e6;
+    const Result result = bend_calibrated(state, options);
+    REQUIRE(result.calibration);
+    CHECK(result.converged);
+    CHECK(strength_of(result) == relative(options.calibrate_to, 2e-3));
+    const Vec3& size = result.specimen.size;
+    const double force = options.calibrate_to * size[1] * size[2] * size[2] / (1.5 * options.span);
+    const double r = state.bonds->radius.front(), l = 1e-7;
+    const double expected = force * (options.span - l) / (std::numbers::pi * r * r * r);
+    CHECK(result.calibration->tensile_strength == relative(expected, 4e-3));
+    options.calibrate_to = 0.0;
+    options.tensile_strength = result.calibration->tensile_strength;
+    CHECK(strength_of(failed(state, options)) == relative(40e6, 2e-3));
+}
+
+TEST_CASE("calibrated: twice the strength of a rough bar takes bonds nearly twice as strong") {
+    const State state = test::make_rough_bar({20, 4, 4});
+    Options options;
+    options.calibrate_to = 20e6;
+    const Result weak = bend_calibrated(state, options);
+    options.calibrate_to = 40e6;
+    const Result strong = bend_calibrated(state, options);
+    CHECK(strong.calibration->tensile_strength == relative(2.0 * weak.calibration->tensile_strength, 0.05));
+    CHECK(strong.calibration->tests <= 5);
 }

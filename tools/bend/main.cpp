@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
+#include "bending/calibration.h"
 #include "bending/dynamic_bending.h"
 #include "bending/failure.h"
 #include "bending/result_document.h"
@@ -41,7 +42,8 @@ int run(int argc, char** argv) {
     if (!options.states.empty()) states.emplace(options.states, common.text);
     cli::Progress progress("bend", common);
     bool converged = true;
-    const auto test = options.to_failure()                        ? bending::bend_to_failure
+    const auto test = options.calibrate_to > 0.0                  ? bending::bend_calibrated
+                      : options.to_failure()                        ? bending::bend_to_failure
                       : options.method == bending::Method::motion ? bending::bend_dynamic
                                                                   : bending::bend_static;
     material.warn_by([&](const std::string& sentence) {

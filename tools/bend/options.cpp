@@ -52,7 +52,8 @@ constexpr const char* footer =
     "of a test to failure\n"
     "  strength              {bending_strength (Pa; 3 F L/(2 b h^2) of the maximum force), peak_force\n"
     "                        (N), first_break (Pa; the same at the first break), breaks,\n"
-    "                        tensile_strength (Pa), shear_strength (Pa), until}\n"
+    "                        tensile_strength (Pa), shear_strength (Pa), until, calibrated_to (Pa; of\n"
+    "                        --calibrate-to, which then found tensile_strength), tests (it took)}\n"
     "  energy                also {work, dissipated}\n"
     "of the dynamic method\n"
     "  time_step (s), steps, punch_velocity (m/s), damping, mass_scaling\n"
@@ -62,6 +63,7 @@ constexpr const char* footer =
     "  bondify --method necks sintered.kiln | bend | analyze modulus --table\n"
     "  bend --max-deflection 0.5nm --states bent.kiln -o bent.json bonded.kiln\n"
     "  bend --tensile-strength 500MPa bonded.kiln | jq .strength.bending_strength\n"
+    "  bend --calibrate-to 120MPa bonded.kiln | jq .strength.tensile_strength\n"
     "  for law in series neck centre; do bend --bond-law $law bonded.kiln; done |\n"
     "      analyze modulus --table";
 
@@ -101,7 +103,8 @@ void Options::check(const CLI::App& app) const {
                                                          {"--max-force", max_force},
                                                          {"--punch-velocity", punch_velocity},
                                                          {"--tensile-strength", tensile_strength},
-                                                         {"--shear-strength", shear_strength}};
+                                                         {"--shear-strength", shear_strength},
+                                                         {"--calibrate-to", calibrate_to}};
     for (const auto& [name, value] : quantities) {
         if (app.count(name) > 0 && !(value > 0.0)) throw CLI::ValidationError(name, "must be greater than zero");
     }
@@ -112,7 +115,7 @@ void Options::check(const CLI::App& app) const {
         throw CLI::ValidationError("--tolerance", "has no meaning with --method dynamic");
     }
     if (app.count("--until") > 0 && !to_failure()) {
-        throw CLI::ValidationError("--until", "needs --tensile-strength or --shear-strength");
+        throw CLI::ValidationError("--until", "needs --tensile-strength, --shear-strength or --calibrate-to");
     }
     if (friction > 0.0 && tolerance < finest_with_friction) {
         throw CLI::ValidationError("--tolerance", "must be at least 1e-12 with --friction, whose limits are known no better");
@@ -126,10 +129,17 @@ void Options::check(const CLI::App& app) const {
 }
 
 void Options::add_strength(CLI::App& app) {
-    cli::add_quantity(app, "--tensile-strength", tensile_strength, io::Dimension::pressure,
+    auto* tensile = cli::add_quantity(app, "--tensile-strength", tensile_strength, io::Dimension::pressure,
                       "Bonds break where tension and bending together reach this stress; the bar is loaded until it fails", "none");
-    cli::add_quantity(app, "--shear-strength", shear_strength, io::Dimension::pressure, "The same for shear and torsion together",
-                      "none");
+    auto* shear = cli::add_quantity(app, "--shear-strength", shear_strength, io::Dimension::pressure,
+                                    "The same for shear and torsion together", "none");
+    cli::add_quantity(
+        app, "--calibrate-to", calibrate_to, io::Dimension::pressure,
+        "Bending strength that such a bar was measured to have: the tensile strength of the bonds with which this one "
+        "breaks there is found by several tests to failure, and used",
+        "none")
+        ->excludes(tensile)
+        ->excludes(shear);
     cli::add_number(app, "--until", until, {0.01, 0.999},
                     "Fraction of its maximum to which the force has fallen when a test to failure ends");
 }
