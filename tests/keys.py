@@ -111,6 +111,11 @@ def documented_keys(text):
     return found
 
 
+def sayable(key):
+    """Whether jq takes .key; it reads .E0 as a number, so fits have dense_modulus too."""
+    return bool(WORD.fullmatch(key)) and (key == "E0" or not re.fullmatch(r"[eE]\d+", key))
+
+
 def main():
     for name, text in TABLES.items():
         with open(name, "w", encoding="utf-8") as file:
@@ -128,7 +133,7 @@ def main():
         faults += [f"{name} writes {key}, and its help does not explain it" for key in sorted(written - documented - COMMON)]
         unwritten = documented - written - COMMON - UNSAMPLED.get(name, set())
         faults += [f"{name} --help explains {key}, which is not written" for key in sorted(unwritten)]
-        faults += [f"{name} writes '{key}', which jq cannot say" for key in sorted(written) if not WORD.fullmatch(key)]
+        faults += [f"{name} writes '{key}', which jq cannot say" for key in sorted(written) if not sayable(key)]
     print("\n".join(faults) or f"{len(SAMPLES)} helps explain what is written")
     return bool(faults)
 

@@ -251,6 +251,8 @@ PROGRAM
     run -0 --separate-stderr "$ANALYZE" modulus short.json # said once
     assert_equal "$stderr" ""
     jq -e '.warnings | length == 1' <<<"$output"
+    run -0 --separate-stderr "$ANALYZE" fit --law gibson-ashby <<<"$output"
+    jq -e '.warnings | length == 1 and (.[0] | contains("below 4"))' <<<"$output"
     run -0 --separate-stderr "$ANALYZE" modulus --table short.json
     assert_regex "$output" " L/h .*[^0-9]3[.][12]"
     run -1 --separate-stderr "$ANALYZE" modulus --height 2um short.json

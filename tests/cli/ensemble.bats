@@ -18,6 +18,7 @@ ensemble() { make -C "$ROOT/workflows/ensemble" PACKINGS="$PWD/packings" TEMPERA
 
 @test "an ensemble by Make: a mean and an interval for every number and for the fit" {
     run -0 ensemble -j2
+    assert_output --partial "Warning: L/h (span over height) is 3.2, below 4"
     assert_output --partial "Means of 2 packings of alumina with their 95 % confidence intervals"
     run -0 jq -c '[length, (map(.case) | unique)]' made/summary.json
     assert_output '[18,["1100C","1250C","fit, knudsen"]]'

@@ -37,6 +37,7 @@ constexpr const char* fit_footer =
     "  points               {porosity, young_modulus, standard_error, bond_law, material, test}; test:\n"
     "                       bending, cell, voxels or measured\n"
     "  residuals            Pa, measured minus law\n"
+    "  warnings             sentences that the tests of the points have, such as of short bars\n"
     "  band                 {relative_density, young_modulus, confidence, prediction}: the law, and its\n"
     "                       95 % intervals (Pa), of itself and of one more point\n"
     "  references           {name, formula, source, young_modulus}: curves of the literature at the same\n"
@@ -171,6 +172,7 @@ Json fit_json(const physics::PorosityLaw& law, const analysis::Fit& fit, const P
     result["confidence_intervals"] = intervals;
     result["covariance"] = fit.covariance ? matrix_json(*fit.covariance) : Json();
     result["points"] = points_json(points);
+    result["warnings"] = points.warnings;
     result["residuals"] = fit.residuals;
     result["r_squared"] = fit.r_squared;
     result["aic"] = fit.aic;

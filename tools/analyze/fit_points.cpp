@@ -1,6 +1,7 @@
 // fit_points.cpp: points of a fit, from documents and tables.
 #include "tools/analyze/fit_points.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/csv.h"
@@ -39,6 +40,8 @@ void add_point(Points& points, const io::Document& document) {
     points.test.push_back(test_of(document));
     const Json material = document.header.value("material", Json());
     points.material.push_back(material.is_string() ? material : Json());
+    for (const std::string& sentence : warnings_at(document))
+        if (std::ranges::find(points.warnings, sentence) == points.warnings.end()) points.warnings.push_back(sentence);
 }
 
 void add_table_points(Points& points, const std::string& file, const TableMaterial& material) {

@@ -15,6 +15,7 @@ struct Points {
     std::vector<std::string> bond_law;             // of the test; empty where it does not say
     std::vector<std::string> test;                 // "bending", "cell", "voxels" of simulated bodies, "measured"
     std::vector<Json> material;                    // its name; null where nothing says it
+    std::vector<std::string> warnings;             // of the tests, each once
 };
 
 /// Adds the point of a dem-modulus or dem-elastic document. Throws Error naming the key that is missing or out of range.

@@ -72,6 +72,12 @@ def as_text(table, packings, material):
     return "\n".join(lines) + "\n"
 
 
+def warnings_text(run, packings):
+    """What the fits, and so the tests of all packings, warn of, each sentence once."""
+    sentences = dict.fromkeys(sentence for packing in packings for sentence in kiln.read(run / packing / "fit.json")[0]["warnings"])
+    return "".join(f"\nWarning: {sentence}\n" for sentence in sentences)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run",
@@ -89,7 +95,8 @@ def main():
         writer.writeheader()
         writer.writerows(table)
     material = kiln.read(given.run / given.packings[0] / given.temperatures[0] / "density.json")[0]["material"]
-    given.output.write_text(as_text(table, len(given.packings), material), encoding="utf-8")
+    text = as_text(table, len(given.packings), material) + warnings_text(given.run, given.packings)
+    given.output.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
