@@ -253,3 +253,12 @@ END
     run -1 "$ANALYZE" modulus "$DATA/two_spheres.jsonl"
     assert_output --partial "document 1: is dem-state, modulus reads dem-bend"
 }
+
+@test "elastic: a modulus above what any isotropic body of that density has is said, in the result too" {
+    "$SINTER" green -q -n 60 --diameter 2um --material copper --method affine --density 0.45 --compact-to 0.58 -o green.kiln
+    "$SINTER" -q --temperature 600C --to-density 0.8,0.98 -o sintered.kiln green.kiln
+    "$BONDIFY" -q --method necks -o necks.kiln sintered.kiln
+    run -0 --separate-stderr "$ANALYZE" elastic necks.kiln
+    [[ "$stderr" == *"document 2: E of "*" GPa is above 122"*"Hashin & Shtrikman"* ]]
+    assert_equal "$(jq -c '[.bound > .young_modulus, (.warnings | length)]' <<<"$output")" $'[true,0]\n[false,1]'
+}

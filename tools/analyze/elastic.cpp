@@ -2,7 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
+#include "analysis/stiffness_bound.h"
 #include "io/material_io.h"
 #include "io/state_io.h"
 #include "mechanics/elastic_tensor.h"
@@ -33,7 +35,9 @@ constexpr const char* elastic_footer =
     "  bond_law, bond_shear\n"
     "  fragments, fragment_particles, rattlers  pieces beside the largest; single particles\n"
     "  negligible_bonds  too thin to count\n"
-    "  affine, affine_young_modulus  of particles that follow the strain: an upper bound\n"
+    "  affine, affine_young_modulus  of particles that follow the strain: an upper bound of the network\n"
+    "  bound           Pa, of Hashin & Shtrikman: no isotropic body of that density is stiffer\n"
+    "  warnings        sentences: a modulus above the bound\n"
     "of voxels also\n"
     "  extrapolation_error (Pa, of young_modulus), poisson_ratio_error, axial_modulus_error\n"
     "  union_fraction  of the box, by spheres and bonds together\n"
@@ -58,6 +62,7 @@ const std::vector<Column> elastic_network_columns{{"material", "material", ""},
                                                   {"poisson_ratio", "Poisson's ratio", ""},
                                                   {"anisotropy", "anisotropy", ""},
                                                   {"affine_young_modulus", "affine bound", "Pa"},
+                                                  {"bound", "isotropic bound", "Pa"},
                                                   {"bond_law", "bond law", ""},
                                                   {"iterations", "iterations", ""}};
 
@@ -82,6 +87,23 @@ Json averages_json(const mechanics::Mat6& stiffness) {
             {"axial_moduli", {axial[0], axial[1], axial[2]}},
             {"axial_modulus", axial.mean()},
             {"stiffness", rows_of(stiffness)}};
+}
+
+/// Mean of the solids' moduli over the volume of the particles: no mixture of them is stiffer.
+physics::IsotropicModuli solid_of(const State& state) {
+    physics::IsotropicModuli sum{0.0, 0.0};
+    double volume = 0.0;
+    for (std::size_t row = 0; row < state.particles.size(); ++row) {
+        const Material& material = state.materials[static_cast<std::size_t>(state.particles.material[row])];
+        const physics::IsotropicModuli solid =
+            physics::isotropic_moduli(physics::required(material.young_modulus, material, "young_modulus"),
+                                      physics::required(material.poisson_ratio, material, "poisson_ratio"));
+        const double share = std::pow(state.particles.radius[row], 3.0);
+        sum.bulk += share * solid.bulk;
+        sum.shear += share * solid.shear;
+        volume += share;
+    }
+    return {sum.bulk / volume, sum.shear / volume};
 }
 
 /// The stiffness of a network; with the law solid its Poisson's ratio has what the springs leave out.
@@ -120,6 +142,11 @@ Json of_network(const State& state, const mechanics::BondModel& model, double to
                        {"fragment_particles", body.fragment_particles},
                        {"rattlers", body.rattlers},
                        {"negligible_bonds", body.negligible_bonds}});
+    const physics::IsotropicModuli solid = solid_of(state);
+    result["bound"] = physics::porous_bound(solid, std::min(relative_density(state), 1.0)).young();
+    result["warnings"] = Json::array();
+    if (const auto sentence = analysis::above_bound_warning(result["young_modulus"], solid, relative_density(state)))
+        result["warnings"].push_back(*sentence);
     return result;
 }
 
@@ -193,9 +220,12 @@ int elastic(int argc, char** argv) {
             if (!common.quiet) cli::warn("analyze elastic", sentence);
         });
         material.needed_for({physics::Use::elasticity});
-        cli::for_each_state(input, material, [&](const State& state, const std::string&) {
+        cli::for_each_state(input, material, [&](const State& state, const std::string& place) {
             if (options.model == Model::network) {
-                add(of_network(state, model, options.tolerance), io::material_names(state));
+                Json result = of_network(state, model, options.tolerance);
+                for (const Json& warning : result["warnings"])
+                    if (!common.quiet) cli::warn("analyze elastic", place + ": " + warning.get<std::string>());
+                add(std::move(result), io::material_names(state));
                 return true;
             }
             add(of_voxels(solve_state("analyze elastic", options, state, voxel::elastic_phases(state), common, watch),

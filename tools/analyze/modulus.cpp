@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "tools/common/quantity_options.h"
@@ -13,6 +14,7 @@
 #include "tools/analyze/analyze.h"
 #include "io/chart.h"
 #include "analysis/line_fit.h"
+#include "analysis/stiffness_bound.h"
 #include "tools/analyze/measured_test.h"
 #include "tools/analyze/report.h"
 #include "tools/analyze/results.h"
@@ -46,7 +48,8 @@ constexpr const char* modulus_footer =
     "  shear_correction     the bracket\n"
     "  poisson_ratio        in the bracket; null with --shear none\n"
     "  poisson_ratio_source  the option, the material or the test that it is from\n"
-    "  warnings             sentences, those of the test too; of bars with L/h below 4\n"
+    "  warnings             sentences, those of the test too; of bars with L/h below 4,\n"
+    "                       of E above what a body of that density can have\n"
     "  material             its name; null where neither the test nor --material says it\n"
     "  bond_law, method     of the test\n"
     "  columns, turned      of a table: the headings that were read {force, deflection}, and which had\n"
@@ -214,10 +217,20 @@ Json slope_error(const BranchFit& fit, bool measured) {
     return measured && std::isfinite(fit.line.slope_error) ? Json(fit.line.slope_error) : Json();
 }
 
-/// The sentences of the test, and one on a short bar where it has none; that is said at once.
-Json warnings_of(const io::Document& document, const ModulusOptions& options, double correction, bool quiet) {
+/// That E is above what the solid of a simulated test allows.
+std::optional<std::string> bound_warning(const io::Document& document, double modulus) {
+    for (const char* key : {"young_modulus", "poisson_ratio", "relative_density"})
+        if (!document.header.contains(key)) return std::nullopt;
+    const physics::IsotropicModuli solid =
+        physics::isotropic_moduli(positive_at(document, "young_modulus"), number_at(document, "poisson_ratio", -1.0));
+    return analysis::above_bound_warning(modulus, solid, positive_at(document, "relative_density"));
+}
+
+/// The sentences of the test, and those on what it gives, which are said at once.
+Json warnings_of(const io::Document& document, const ModulusOptions& options, double modulus, double correction, bool quiet) {
     std::vector<std::string> list = options.bar.warnings(document);
-    if (const auto sentence = options.bar.short_bar_warning(document, correction)) {
+    for (const auto& sentence : {options.bar.short_bar_warning(document, correction), bound_warning(document, modulus)}) {
+        if (!sentence) continue;
         list.push_back(*sentence);
         if (!quiet) cli::warn("analyze modulus", document.place + ": " + *sentence);
     }
@@ -272,7 +285,7 @@ Json modulus_of(const io::Document& document, const ModulusOptions& options, boo
                 {"points", fit.force.size()},
                 {"r_squared", fit.line.r_squared},
                 {"branch", options.branch()},
-                {"warnings", warnings_of(document, options, correction, quiet)}};
+                {"warnings", warnings_of(document, options, modulus, correction, quiet)}};
     if (is_measured(document)) result["source"] = source;
     for (const char* key : {"bond_law", "method", "columns", "turned", "history"})
         if (document.header.contains(key)) result[key] = document.header[key];
