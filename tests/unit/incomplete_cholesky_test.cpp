@@ -79,8 +79,11 @@ TEST_CASE_TEMPLATE("incomplete factors of stiff and soft springs see every resid
     }
 }
 
-TEST_CASE("a pivot that left-out fill makes negative is taken as it was before; one that is rounding stays zero") {
-    const Eigen::Matrix3d before = Vec3(4.0, 3.0, 2.0).asDiagonal(), pivot = Vec3(-1.0, 1e-16, 0.5).asDiagonal();
-    const Eigen::Matrix3d inverse = linalg::pivot_inverse(pivot, before, 1e-14);
-    CHECK(inverse.isApprox(Eigen::Matrix3d(Vec3(0.25, 0.0, 2.0).asDiagonal())));
+TEST_CASE("the inverse of a pivot: none of a negative one, zero where it is rounding") {
+    const auto inverse_of_diagonal = [](double x, double y, double z) {
+        return linalg::pivot_inverse(Vec3(x, y, z).asDiagonal(), 9.0, 1e-14);
+    };
+    CHECK_FALSE(inverse_of_diagonal(-1.0, 1e-16, 0.5));
+    REQUIRE(inverse_of_diagonal(4.0, -1e-16, 0.5));
+    CHECK(inverse_of_diagonal(4.0, -1e-16, 0.5)->isApprox(Eigen::Matrix3d(Vec3(0.25, 0.0, 2.0).asDiagonal())));
 }
