@@ -508,8 +508,12 @@ class Cases(unittest.TestCase):
         necks = {"necks": {"pair": {"type": "i4", "shape": [1, 2], "data": [0, 1]},
                            "radius": {"type": "f8", "shape": [1], "data": [0.25]}}}
         self.one("ok.jsonl", text(**necks))
-        _, warnings, _ = convert(os.path.join(self.folder, "ok.jsonl"), os.path.join(self.folder, "ok.xyz"))
-        self.assertTrue([each for each in warnings if "does not hold necks" in each])
+        ok, xyz = (os.path.join(self.folder, name) for name in ("ok.jsonl", "ok.xyz"))
+        status, _, error = convert(ok, xyz)
+        self.assertEqual(status, 1)
+        self.assertRegex(error, "ok.jsonl: names no material; --material NAME or FILE.json says what it is$")
+        _, warnings, _ = convert("--material", "alumina", ok, xyz)
+        self.assertTrue([each for each in warnings if "does not hold the constants of materials, necks" in each])
         necks["necks"]["pair"]["data"] = [0, 2]
         self.no("bad.jsonl", text(**necks), says="a neck has particle row 2, there are 2")
         self.no("bad.jsonl", "{", says="document 1: is no line of JSON")

@@ -160,9 +160,9 @@ class Differential(unittest.TestCase):
         source, likes = first, ("--like", first)
         for step, (name, style) in enumerate((("data", "nano"), ("csv", None), ("dump", "cgs"), ("vtu", None), ("data", "micro"),
                                               ("jsonl", None))):
-            kiln, target = self.path(f"step{step}.kiln"), self.path(f"step{step}.{name}")
-            for arguments in ((*likes, source, kiln) if source != first else (source, kiln),
-                              (*(("--units", style) if style else ()), kiln, target)):
+            between, target = self.path(f"step{step}.kiln"), self.path(f"step{step}.{name}")
+            for arguments in ((*likes, source, between) if source != first else (source, between),
+                              (*(("--units", style) if style else ()), between, target)):
                 status, _, error = convert(*arguments)
                 self.assertEqual((status, error), (0, ""), name)
             source = target

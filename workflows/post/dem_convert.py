@@ -82,7 +82,7 @@ def read_dem(path, given):
             document["materials"] = convert_materials.in_stream(document, given.materials, path)
             check(document, path)
         elif not document.get("materials") and not given.like and given.foreign:
-            warn(f"{path}: names no material, and alumina is assumed; --material NAME or FILE.json says what it is")
+            raise ConvertError(f"{path}: names no material; --material NAME or FILE.json says what it is")
         yield document
 
 
