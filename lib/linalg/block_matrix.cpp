@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
+#include "linalg/block_row.h"
 
 namespace kiln::linalg {
 
@@ -70,14 +70,11 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
     return result;
 }
 
-/// Sums `term(first, last)` over fixed chunks of the index range, in their order.
-template <typename Term>
-double chunked_sum(std::int64_t size, const Term& term) {
-    const std::int64_t chunks = (size + rows_in_chunk - 1) / rows_in_chunk;
-    return sum_chunks(at(chunks), 0.0, [&](std::size_t chunk) {
-        const auto first = static_cast<std::int64_t>(chunk) * rows_in_chunk;
-        return term(first, std::min(size, first + rows_in_chunk));
-    });
+template <int width>
+Values<double, width> row_of_product(const BlockMatrix& matrix, std::int32_t row, const Batch<width>& x) {
+    RowSum<double, width> sum;
+    for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) sum.add(matrix.block[at(k)], x[at(matrix.column[at(k)])]);
+    return sum.values();
 }
 
 }  // namespace
@@ -90,29 +87,39 @@ ColumnIndex column_index(const BlockMatrix& matrix) {
     });
 }
 
-void multiply(const BlockMatrix& matrix, const Vector& x, Vector& y) {
+template <int width>
+void multiply(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y) {
     y.resize(at(matrix.rows()));
 #pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
-    for (std::int32_t row = 0; row < matrix.rows(); ++row) {
-        Vec6 sum = Vec6::Zero();
-        for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-            sum.noalias() += matrix.block[at(k)].lazyProduct(x[at(matrix.column[at(k)])]);
-        }
-        y[at(row)] = sum;
-    }
+    for (std::int32_t row = 0; row < matrix.rows(); ++row) y[at(row)] = row_of_product(matrix, row, x);
 }
 
-void residual(const BlockMatrix& matrix, const Vector& x, const Vector& b, Vector& r) {
+template <int width>
+PerField<width> multiply_and_dot(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y) {
+    y.resize(at(matrix.rows()));
+    return sum_over_chunks<width>(y.size(), [&](std::size_t first, std::size_t last) {
+        PerField<width> sum = PerField<width>::Zero();
+        for (std::size_t row = first; row < last; ++row) {
+            y[row] = row_of_product(matrix, static_cast<std::int32_t>(row), x);
+            sum += x[row].cwiseProduct(y[row]).colwise().sum().array();
+        }
+        return sum;
+    });
+}
+
+template <int width>
+void residual(const BlockMatrix& matrix, const Batch<width>& x, const Batch<width>& b, Batch<width>& r) {
     r.resize(at(matrix.rows()));
 #pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
-    for (std::int32_t row = 0; row < matrix.rows(); ++row) {
-        Vec6 sum = b[at(row)];
-        for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-            sum.noalias() -= matrix.block[at(k)].lazyProduct(x[at(matrix.column[at(k)])]);
-        }
-        r[at(row)] = sum;
-    }
+    for (std::int32_t row = 0; row < matrix.rows(); ++row) r[at(row)] = b[at(row)] - row_of_product(matrix, row, x);
 }
+
+template void multiply(const BlockMatrix&, const Batch<1>&, Batch<1>&);
+template void multiply(const BlockMatrix&, const Batch<6>&, Batch<6>&);
+template PerField<1> multiply_and_dot(const BlockMatrix&, const Batch<1>&, Batch<1>&);
+template PerField<6> multiply_and_dot(const BlockMatrix&, const Batch<6>&, Batch<6>&);
+template void residual(const BlockMatrix&, const Batch<1>&, const Batch<1>&, Batch<1>&);
+template void residual(const BlockMatrix&, const Batch<6>&, const Batch<6>&, Batch<6>&);
 
 BlockMatrix product(const BlockMatrix& a, const BlockMatrix& b) {
     return sum_of_rows(a.rows(), b, [&](std::int32_t row, const auto& visit) {
@@ -130,11 +137,11 @@ BlockMatrix transposed_product(const BlockMatrix& a, const ColumnIndex& columns,
 }
 
 double dot(const Vector& x, const Vector& y) {
-    return chunked_sum(static_cast<std::int64_t>(x.size()), [&](std::int64_t first, std::int64_t last) {
+    return sum_over_chunks<1>(x.size(), [&](std::size_t first, std::size_t last) {
         double sum = 0.0;
-        for (std::int64_t i = first; i < last; ++i) sum += x[at(i)].dot(y[at(i)]);
-        return sum;
-    });
+        for (std::size_t i = first; i < last; ++i) sum += x[i].dot(y[i]);
+        return PerField<1>(sum);
+    })[0];
 }
 
 double norm(const Vector& x) { return std::sqrt(dot(x, x)); }

@@ -1,6 +1,7 @@
 // block_solver.h: preconditioned conjugate gradients for systems of 6x6 blocks.
 #pragma once
 
+#include <array>
 #include <functional>
 
 #include "core/stop.h"
@@ -14,11 +15,17 @@ struct SolveReport {
     bool converged = false;
 };
 
-/// Improves x until the norm of b - A x is at most `tolerance` times that of b, or max_iterations are done. What the iteration has
-/// lost by rounding is solved for again.
-/// A: symmetric positive semidefinite with b in its range; precondition(r, z): z = M^-1 r with M symmetric positive definite.
+template <int width>
+using Preconditioner = std::function<void(const Batch<width>& r, Batch<width>& z)>;  // z = M^-1 r, of each field
+
+/// Improves each field of x until the norm of b - A x is at most `tolerance` times that of b, or max_iterations are done. What the
+/// iteration has lost by rounding is solved for again. An empty x is zero. Fields are independent of each other, but for the
+/// reading of A and M.
+/// A: symmetric positive semidefinite with b in its range; M symmetric positive definite, or nearly so. Width: 1 or 6.
 /// Throws Error where a number is not finite, Interrupted where a stop is requested.
-SolveReport solve_blocks(const BlockMatrix& matrix, const std::function<void(const Vector&, Vector&)>& precondition,
-                         const Vector& b, Vector& x, double tolerance, int max_iterations, const StopRequest& stop = {});
+template <int width>
+std::array<SolveReport, width> solve_blocks(const BlockMatrix& matrix, const Preconditioner<width>& precondition,
+                                            const Batch<width>& b, Batch<width>& x, double tolerance, int max_iterations,
+                                            const StopRequest& stop = {});
 
 }  // namespace kiln::linalg

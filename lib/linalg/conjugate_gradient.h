@@ -1,4 +1,4 @@
-// conjugate_gradient.h: preconditioned conjugate gradients, the one iteration of all linear solves, and its estimate of the error.
+// conjugate_gradient.h: preconditioned conjugate gradients, and their estimate of the error. Batches: block_solver.h.
 #pragma once
 
 #include <algorithm>

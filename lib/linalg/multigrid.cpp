@@ -2,9 +2,11 @@
 #include "linalg/multigrid.h"
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 
 #include "linalg/aggregation.h"
+#include "linalg/block_row.h"
 
 namespace kiln::linalg {
 
@@ -73,119 +75,192 @@ Eigen::MatrixXd dense(const BlockMatrix& matrix) {
     return result;
 }
 
-}  // namespace
-
-Multigrid::Multigrid(const BlockMatrix& matrix, NodeGeometry geometry, double max_eigenvalue_bound) {
-    levels_.emplace_back();
-    levels_.front().matrix = &matrix;
-    levels_.front().max_eigenvalue = max_eigenvalue_bound;
-    build(std::move(geometry));
-    for (Level& level : levels_) {
-        if (!level.matrix) level.matrix = &level.own;
-    }
+/// Blocks times a factor in the precision of the levels.
+template <typename Real>
+std::vector<Eigen::Matrix<Real, 6, 6>> rounded(const std::vector<Mat6>& blocks, double factor) {
+    std::vector<Eigen::Matrix<Real, 6, 6>> result(blocks.size());
+#pragma omp parallel for schedule(static) if (blocks.size() > worth_threads)
+    for (std::size_t k = 0; k < blocks.size(); ++k) result[k] = (factor * blocks[k]).template cast<Real>();
+    return result;
 }
 
-void Multigrid::build(NodeGeometry geometry) {
+template <typename Real>
+BasicBlockMatrix<Real> rounded(const BlockMatrix& matrix, double factor) {
+    return {matrix.columns, matrix.start, matrix.column, rounded<Real>(matrix.block, factor)};
+}
+
+/// A power of two that takes the greatest diagonal value of a matrix to the order of one: single precision has a narrow range.
+double unit_scale(const BlockMatrix& matrix) {
+    double greatest = 0.0;
+    for (std::int32_t row = 0; row < matrix.rows(); ++row)
+        for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k)
+            if (matrix.column[at(k)] == row) greatest = std::max(greatest, matrix.block[at(k)].diagonal().maxCoeff());
+    return greatest > 0.0 && std::isfinite(greatest) ? std::exp2(-std::ilogb(greatest)) : 1.0;
+}
+
+template <typename Real, int lanes>
+Values<Real, lanes> row_of_product(const BasicBlockMatrix<Real>& matrix, std::size_t row,
+                                   const std::vector<Values<Real, lanes>>& x) {
+    const auto first = at(matrix.start[row]);
+    return sum_of_terms<Real, lanes>(matrix.start[row + 1] - matrix.start[row], [&](std::int64_t k) {
+        return Term<Real, lanes>{&matrix.block[first + at(k)], &x[at(matrix.column[first + at(k)])]};
+    });
+}
+
+template <typename Real, int lanes>
+Values<Real, lanes> block_product(const Eigen::Matrix<Real, 6, 6>& block, const Values<Real, lanes>& x) {
+    return sum_of_terms<Real, lanes>(1, [&](std::int64_t) { return Term<Real, lanes>{&block, &x}; });
+}
+
+}  // namespace
+
+template <typename Real>
+BasicMultigrid<Real>::BasicMultigrid(const BlockMatrix& matrix, NodeGeometry geometry, double max_eigenvalue) {
+    build(matrix, std::move(geometry), max_eigenvalue);
+}
+
+template <typename Real>
+void BasicMultigrid<Real>::build(const BlockMatrix& finest, NodeGeometry geometry, double max_eigenvalue_bound) {
+    scale_ = unit_scale(finest);
+    BlockMatrix coarse;  // of the level, but for the finest
     while (true) {
-        Level& level = levels_.back();
-        const BlockMatrix& matrix = level.matrix ? *level.matrix : level.own;
+        const BlockMatrix& matrix = levels_.empty() ? finest : coarse;
+        Level& level = levels_.emplace_back();
+        level.nodes = at(matrix.rows());
+        level.blocks = matrix.block.size();
         if (matrix.rows() <= coarsest_nodes) {
-            Eigen::MatrixXd full = dense(matrix);
+            Eigen::MatrixXd full = scale_ * dense(matrix);
             full.diagonal().array() += 1e-14 * full.diagonal().maxCoeff();
             coarsest_.compute(full);
             return;
         }
-        level.inverse_diagonal = inverse_diagonal(matrix);
-        if (level.max_eigenvalue == 0.0) level.max_eigenvalue = max_eigenvalue(matrix, level.inverse_diagonal);
+        const std::vector<Mat6> inverse = inverse_diagonal(matrix);
+        level.max_eigenvalue = levels_.size() == 1 ? max_eigenvalue_bound : max_eigenvalue(matrix, inverse);
         const Aggregates aggregates = find_aggregates(matrix);
         // Each level has fewer nodes than the one before, so the loop ends; nodes that nothing connects would never become fewer.
         if (aggregates.root.size() >= at(matrix.rows()))
             throw Error("the matrix has " + std::to_string(matrix.rows()) +
                         " nodes that nothing connects, so it cannot be coarsened");
-        level.prolongation = smoothed(matrix, level.inverse_diagonal, prolongation_damping / level.max_eigenvalue,
-                                      rigid_prolongation(aggregates, geometry));
-        level.restriction = column_index(level.prolongation);
+        const BlockMatrix prolongation = smoothed(matrix, inverse, prolongation_damping / level.max_eigenvalue,
+                                                  rigid_prolongation(aggregates, geometry));
+        level.restriction = column_index(prolongation);
+        BlockMatrix coarser = transposed_product(prolongation, level.restriction, product(matrix, prolongation));
+        level.prolongation = rounded<Real>(prolongation, 1.0);
+        level.inverse_diagonal = rounded<Real>(inverse, 1.0 / scale_);
+        level.matrix = rounded<Real>(matrix, scale_);
+        coarse = std::move(coarser);
         std::vector<Vec3> roots;
         for (const std::int32_t root : aggregates.root) roots.push_back(geometry.position[at(root)]);
         geometry.position = std::move(roots);
-        Level coarser;
-        coarser.own = transposed_product(level.prolongation, level.restriction, product(matrix, level.prolongation));
-        levels_.push_back(std::move(coarser));
     }
 }
 
-double Multigrid::complexity() const {
+template <typename Real>
+double BasicMultigrid<Real>::complexity() const {
     double blocks = 0.0;
-    for (const Level& level : levels_) blocks += static_cast<double>(level.matrix->block.size());
-    return blocks / static_cast<double>(levels_.front().matrix->block.size());
+    for (const Level& level : levels_) blocks += static_cast<double>(level.blocks);
+    return blocks / static_cast<double>(levels_.front().blocks);
 }
 
 /// Two steps of the Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1).
-void Multigrid::smooth(Level& level, bool from_zero) {
-    const BlockMatrix& matrix = *level.matrix;
+template <typename Real>
+template <int lanes>
+void BasicMultigrid<Real>::smooth(const Level& level, Fields<lanes>& fields, bool from_zero) const {
     const double high = level.max_eigenvalue, low = smoothed_part * high;
     const double theta = (high + low) / 2.0, delta = (high - low) / 2.0;
     const double first_rho = delta / theta, second_rho = 1.0 / (2.0 * theta / delta - first_rho);
     const std::array factors{std::array{0.0, 1.0 / theta}, std::array{second_rho * first_rho, 2.0 * second_rho / delta}};
-    const std::size_t size = level.load.size();
+    auto& [load, solution, steps] = fields;
+    // clang lets no structured binding into a parallel loop
+    std::vector<Values<Real, lanes>>&loads = load, &x = solution, &last = steps;
     for (std::size_t step = 0; step < factors.size(); ++step) {
-        const double memory = factors[step][0], gain = factors[step][1];  // clang lets no structured binding into a parallel loop
+        const Real memory = static_cast<Real>(factors[step][0]), gain = static_cast<Real>(factors[step][1]);
         if (from_zero && step == 0) {
-#pragma omp parallel for schedule(static) if (size > worth_threads)
-            for (std::size_t i = 0; i < size; ++i) {
-                level.step[i] = gain * (level.inverse_diagonal[i] * level.load[i]);
-                level.solution[i] = level.step[i];
+#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
+            for (std::size_t i = 0; i < level.nodes; ++i) {
+                last[i] = gain * block_product(level.inverse_diagonal[i], loads[i]);
+                x[i] = last[i];
             }
             continue;
         }
-#pragma omp parallel for schedule(static) if (size > worth_threads)
-        for (std::size_t i = 0; i < size; ++i) {
-            Vec6 rest = level.load[i];
-            const auto row = static_cast<std::int32_t>(i);
-            for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-                rest.noalias() -= matrix.block[at(k)].lazyProduct(level.solution[at(matrix.column[at(k)])]);
-            }
-            level.step[i] = memory * level.step[i] + gain * (level.inverse_diagonal[i] * rest);
+        const bool first = step == 0;  // whatever stands in the step is not from this iteration
+#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
+        for (std::size_t i = 0; i < level.nodes; ++i) {
+            const Values<Real, lanes> rest = loads[i] - row_of_product(level.matrix, i, x);
+            const Values<Real, lanes> change = gain * block_product(level.inverse_diagonal[i], rest);
+            if (first)
+                last[i] = change;
+            else
+                last[i] = memory * last[i] + change;
         }
-        add(1.0, level.step, level.solution);
+#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
+        for (std::size_t i = 0; i < level.nodes; ++i) x[i] += last[i];
     }
 }
 
-void Multigrid::solve_coarsest(Level& level) {
-    const auto size = static_cast<Eigen::Index>(6 * level.load.size());
-    level.solution.resize(level.load.size());
-    Eigen::Map<const Eigen::VectorXd> load(level.load.front().data(), size);
-    Eigen::Map<Eigen::VectorXd>(level.solution.front().data(), size) = coarsest_.solve(load);
+template <typename Real>
+template <int lanes>
+void BasicMultigrid<Real>::solve_coarsest(Fields<lanes>& fields) const {
+    using Unknowns = Eigen::Matrix<Real, Eigen::Dynamic, lanes, lanes == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+    const auto size = static_cast<Eigen::Index>(6 * fields.load.size());
+    const Eigen::Map<const Unknowns> load(fields.load.front().data(), size, lanes);
+    const Eigen::MatrixXd solution = coarsest_.solve(load.template cast<double>());
+    Eigen::Map<Unknowns>(fields.solution.front().data(), size, lanes) = solution.template cast<Real>();
 }
 
-void Multigrid::cycle(std::size_t index) {
-    Level& level = levels_[index];
-    if (index + 1 == levels_.size()) return solve_coarsest(level);
-    Level& coarser = levels_[index + 1];
-    level.solution.resize(level.load.size());
-    level.step.resize(level.load.size());
-    smooth(level, true);
-    Vector& rest = level.step;
-    residual(*level.matrix, level.solution, level.load, rest);
-    coarser.load.resize(at(level.prolongation.columns));
+template <typename Real>
+template <int lanes>
+void BasicMultigrid<Real>::cycle(std::size_t index) {
+    Fields<lanes>& here = fields<lanes>()[index];
+    if (index + 1 == levels_.size()) return solve_coarsest(here);
+    const Level& level = levels_[index];
+    Fields<lanes>& coarser = fields<lanes>()[index + 1];
+    smooth(level, here, true);
+#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
+    for (std::size_t i = 0; i < level.nodes; ++i) here.step[i] = here.load[i] - row_of_product(level.matrix, i, here.solution);
 #pragma omp parallel for schedule(static) if (coarser.load.size() > worth_threads)
     for (std::size_t a = 0; a < coarser.load.size(); ++a) {
-        Vec6 sum = Vec6::Zero();
-        for (const auto& [row, block] : level.restriction.of(a)) {
-            sum.noalias() += level.prolongation.block[at(block)].transpose() * rest[at(row)];
-        }
-        coarser.load[a] = sum;
+        const auto entries = level.restriction.of(a);
+        coarser.load[a] = sum_of_terms<Real, lanes, true>(std::ssize(entries), [&](std::int64_t k) {
+            const auto [row, block] = entries[at(k)];
+            return Term<Real, lanes>{&level.prolongation.block[at(block)], &here.step[at(row)]};
+        });
     }
-    cycle(index + 1);
-    multiply(level.prolongation, coarser.solution, level.step);
-    add(1.0, level.step, level.solution);
-    smooth(level, false);
+    cycle<lanes>(index + 1);
+#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
+    for (std::size_t i = 0; i < level.nodes; ++i) here.solution[i] += row_of_product(level.prolongation, i, coarser.solution);
+    smooth(level, here, false);
 }
 
-void Multigrid::apply(const Vector& r, Vector& z) {
-    levels_.front().load = r;
-    cycle(0);
-    z = levels_.front().solution;
+/// Fields go to the levels with a norm of one, whatever their unit.
+template <typename Real>
+template <int width>
+void BasicMultigrid<Real>::apply(const Batch<width>& r, Batch<width>& z) {
+    constexpr int lanes = width == 1 ? 1 : six;
+    std::vector<Fields<lanes>>& all = fields<lanes>();
+    while (all.size() < levels_.size()) {
+        const std::size_t nodes = levels_[all.size()].nodes;
+        const std::vector<Values<Real, lanes>> zero(nodes, Values<Real, lanes>::Zero());
+        all.push_back({zero, zero, zero});
+    }
+    const PerField<width> size = norms<width>(r);
+    const PerField<width> inwards = (size > 0.0).select(size.inverse(), 0.0), outwards = scale_ * size;
+    std::vector<Values<Real, lanes>>&load = all.front().load, &solution = all.front().solution;
+    z.resize(r.size());
+#pragma omp parallel for schedule(static) if (r.size() > worth_threads)
+    for (std::size_t i = 0; i < r.size(); ++i)
+        load[i].template leftCols<width>() = (r[i] * inwards.matrix().asDiagonal()).template cast<Real>();
+    cycle<lanes>(0);
+#pragma omp parallel for schedule(static) if (r.size() > worth_threads)
+    for (std::size_t i = 0; i < r.size(); ++i)
+        z[i] = solution[i].template leftCols<width>().template cast<double>() * outwards.matrix().asDiagonal();
 }
+
+template class BasicMultigrid<float>;
+template void BasicMultigrid<float>::apply(const Batch<1>&, Batch<1>&);
+template void BasicMultigrid<float>::apply(const Batch<6>&, Batch<6>&);
+template class BasicMultigrid<double>;  // shows what is the method's and what is rounding
+template void BasicMultigrid<double>::apply(const Batch<1>&, Batch<1>&);
+template void BasicMultigrid<double>::apply(const Batch<6>&, Batch<6>&);
 
 }  // namespace kiln::linalg

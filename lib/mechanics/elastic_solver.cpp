@@ -47,9 +47,18 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequ
 linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
     const auto precondition = [this](const Vector& r, Vector& z) {
         throw_if_stopped(stop_);
-        preconditioner_->apply(r, z);
+        preconditioner_->apply<1>(r, z);
     };
-    return linalg::solve_blocks(matrix_, precondition, load, x, tolerance, max_iterations);
+    return linalg::solve_blocks<1>(matrix_, precondition, load, x, tolerance, max_iterations)[0];
+}
+
+std::array<linalg::SolveReport, 6> ElasticSolver::solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
+                                                        int max_iterations) {
+    const auto precondition = [this](const linalg::Batch<6>& r, linalg::Batch<6>& z) {
+        throw_if_stopped(stop_);
+        preconditioner_->apply<6>(r, z);
+    };
+    return linalg::solve_blocks<6>(matrix_, precondition, load, x, tolerance, max_iterations);
 }
 
 void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double share) {
@@ -67,7 +76,7 @@ void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double 
 }
 
 void ElasticSolver::forces(const Vector& displacement, Vector& force) const {
-    linalg::multiply(matrix_, displacement, force);
+    linalg::multiply<1>(matrix_, displacement, force);
     force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
 }
 

@@ -1,6 +1,7 @@
 // elastic_solver.h: linear response of a bond network: matrix, preconditioner and conjugate gradients, built once for many loads.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/stop.h"
@@ -21,11 +22,15 @@ class ElasticSolver {
    public:
     /// stop: asked in each iteration of a solve, which throws Interrupted.
     ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop = {});
-    ElasticSolver(const ElasticSolver&) = delete;  // the preconditioner refers to the matrix
+    ElasticSolver(const ElasticSolver&) = delete;  // as large as the network
     ElasticSolver& operator=(const ElasticSolver&) = delete;
 
     /// Displacements under a load in equilibrium; x is where the search starts. See linalg::solve_blocks for the result.
     linalg::SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
+
+    /// The same of six loads at once: matrix and preconditioner are read once for all.
+    std::array<linalg::SolveReport, 6> solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
+                                             int max_iterations = 1000);
 
     /// Forces that hold the network in a displacement field: the stiffness matrix without the ground, times the displacement.
     void forces(const Vector& displacement, Vector& force) const;

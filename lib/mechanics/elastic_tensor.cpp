@@ -62,17 +62,22 @@ Compliance compliance_of(const Mat6& stiffness) {
 ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop) {
     ElasticSolver solver(network, Ground::displacement, stop);
     ElasticTensor tensor;
-    const Vector rest(network.nodes(), Vec6::Zero());
+    Vector field(network.nodes(), Vec6::Zero());
+    linalg::Batch<6> load(network.nodes()), displacement;
     for (int component = 0; component < 6; ++component) {
-        const Mat3 strain = unit_strain(component);
-        const std::vector<BondLoad> affine = bond_loads(network, rest, strain);
-        Vector displacement;
-        const linalg::SolveReport report = solver.solve(nodal_forces(network, affine), displacement, tolerance);
+        const std::vector<BondLoad> affine = bond_loads(network, field, unit_strain(component));
         tensor.affine.col(component) = mean_stress(network, affine, volume);
-        tensor.stiffness.col(component) = mean_stress(network, bond_loads(network, displacement, strain), volume);
+        const Vector forces = nodal_forces(network, affine);
+        for (std::size_t node = 0; node < forces.size(); ++node) load[node].col(component) = forces[node];
+    }
+    for (const linalg::SolveReport& report : solver.solve(load, displacement, tolerance)) {
         tensor.iterations += report.iterations;
         tensor.residual = std::max(tensor.residual, report.residual);
         tensor.converged = tensor.converged && report.converged;
+    }
+    for (int component = 0; component < 6; ++component) {
+        for (std::size_t node = 0; node < field.size(); ++node) field[node] = displacement[node].col(component);
+        tensor.stiffness.col(component) = mean_stress(network, bond_loads(network, field, unit_strain(component)), volume);
     }
     return tensor;
 }

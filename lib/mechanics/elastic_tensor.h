@@ -15,7 +15,7 @@ struct ElasticTensor {
     bool converged = true;
 };
 
-/// Six uniform strains of a periodic network in a cell of the given volume, m3, solved one by one with the same preconditioner.
+/// Six uniform strains of a periodic network in a cell of the given volume, m3, solved at once.
 /// Throws Interrupted.
 ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop = {});
 

@@ -93,7 +93,7 @@ TEST_CASE("rigid motions store no energy and load no bond") {
     for (std::size_t i = 0; i < network.nodes(); ++i)
         motion[i] << shift + turn.cross(network.position[i]), turn * network.rotation_length;
     Vector force;
-    multiply(stiffness_matrix(network), motion, force);
+    multiply<1>(stiffness_matrix(network), motion, force);
     const double typical = network.stiffness.front().normal * norm(motion);
     CHECK(norm(force) <= 1e-12 * typical);
     for (const BondLoad& load : bond_loads(network, motion)) CHECK(load.force.norm() <= 1e-12 * typical);
@@ -105,7 +105,7 @@ TEST_CASE("forces of the matrix are those of the bonds") {
     for (std::size_t i = 0; i < network.nodes(); ++i) {
         for (int k = 0; k < 6; ++k) displacement[i][k] = std::sin(static_cast<double>(7 * i) + 3.0 * k);
     }
-    multiply(stiffness_matrix(network), displacement, force);
+    multiply<1>(stiffness_matrix(network), displacement, force);
     const Vector from_bonds = nodal_forces(network, bond_loads(network, displacement));
     add(1.0, from_bonds, force);
     CHECK(norm(force) <= 1e-13 * norm(from_bonds));
@@ -141,21 +141,90 @@ TEST_CASE("iterations grow neither with the number of particles nor with slender
     }
 }
 
-TEST_CASE("the preconditioner is symmetric and positive") {
+TEST_CASE("the preconditioner is symmetric and positive, to the rounding of its levels; six fields give what one gives") {
     const BondNetwork network = bonded_body(rough_bar({30, 6, 6}), {}).network;
-    ElasticSolver solver(network, Ground::displacement_and_rotation);
-    linalg::Multigrid& preconditioner = solver.preconditioner();
-    Vector a(network.nodes()), b(network.nodes()), pa, pb;
-    for (std::size_t i = 0; i < network.nodes(); ++i) {
-        for (int k = 0; k < 6; ++k) {
-            a[i][k] = std::sin(static_cast<double>(5 * i) + 2.0 * k);
-            b[i][k] = std::cos(static_cast<double>(3 * i) - 1.0 * k);
+    const auto check = [&]<typename Real>(Real rounding) {
+        BlockMatrix matrix = stiffness_matrix(network);
+        matrix.block.front().diagonal().array() += matrix.block.front().trace() / 6.0;
+        linalg::NodeGeometry geometry{network.position, Vec3::Zero()};
+        for (Vec3& position : geometry.position) position /= network.rotation_length;
+        linalg::BasicMultigrid<Real> preconditioner(matrix, geometry, 2.0);
+        Vector a(network.nodes()), b(network.nodes()), pa, pb;
+        Batch<6> both(network.nodes(), Values<double, 6>::Zero()), preconditioned;
+        for (std::size_t i = 0; i < network.nodes(); ++i) {
+            for (int k = 0; k < 6; ++k) {
+                a[i][k] = std::sin(static_cast<double>(5 * i) + 2.0 * k);
+                b[i][k] = std::cos(static_cast<double>(3 * i) - 1.0 * k);
+            }
+            both[i].col(1) = a[i];
+            both[i].col(4) = b[i];
         }
+        preconditioner.template apply<1>(a, pa);
+        preconditioner.template apply<1>(b, pb);
+        CHECK(dot(a, pb) == relative(dot(b, pa), rounding));
+        CHECK(dot(a, pa) > 0.0);
+        preconditioner.template apply<6>(both, preconditioned);
+        double difference = 0.0, size = 0.0;
+        for (std::size_t i = 0; i < network.nodes(); ++i) {
+            difference += (preconditioned[i].col(1) - pa[i]).squaredNorm() + (preconditioned[i].col(4) - pb[i]).squaredNorm();
+            size += pa[i].squaredNorm() + pb[i].squaredNorm();
+            CHECK(preconditioned[i].col(0).isZero(0.0));
+        }
+        CHECK(std::sqrt(difference / size) < rounding);
+    };
+    check(1e-10);
+    check(1e-4f);
+}
+
+/// What no other test asks of the solver: loads side by side that end at different iterations, one that is zero, and one whose
+/// search starts at its end.
+TEST_CASE("six loads at once: each as if it were alone, in its own number of iterations") {
+    const BondNetwork network = bonded_body(rough_bar({24, 6, 6}), {}).network;
+    ElasticSolver solver(network, Ground::displacement_and_rotation);
+    const std::size_t last = network.nodes() - 1;
+    std::vector<Vector> loads;
+    for (const Vec3& force : {Vec3(0.0, 0.0, 1e-6), Vec3(0.0, 0.0, 0.0), Vec3(1e3, 0.0, 0.0), Vec3(1e-20, 2e-20, 0.0)})
+        loads.push_back(balanced_load(network, last, 0, force));
+    loads.push_back(balanced_load(network, 1, 0, Vec3(0.0, 1.0, 0.0)));
+    loads.push_back(loads.front());
+    Batch<6> load(network.nodes()), x(network.nodes(), Values<double, 6>::Zero());
+    const Vector known = solved(network, loads[5]);
+    for (std::size_t node = 0; node < network.nodes(); ++node) {
+        for (std::size_t k = 0; k < 6; ++k) load[node].col(static_cast<Eigen::Index>(k)) = loads[k][node];
+        x[node].col(5) = known[node];
     }
-    preconditioner.apply(a, pa);
-    preconditioner.apply(b, pb);
-    CHECK(dot(a, pb) == relative(dot(b, pa), 1e-10));
-    CHECK(dot(a, pa) > 0.0);
+    const std::array<linalg::SolveReport, 6> reports = solver.solve(load, x, 1e-10);
+    for (std::size_t k = 0; k < 6; ++k) {
+        CAPTURE(k);
+        Vector alone, rest(network.nodes());
+        if (k == 5) alone = known;
+        const linalg::SolveReport report = solver.solve(loads[k], alone, 1e-10);
+        CHECK(reports[k].converged);
+        CHECK(reports[k].residual <= 1e-10);
+        CHECK(std::abs(reports[k].iterations - report.iterations) <= 1);  // rounding decides the last one
+        for (std::size_t node = 0; node < network.nodes(); ++node)
+            rest[node] = x[node].col(static_cast<Eigen::Index>(k)) - alone[node];
+        CHECK(norm(rest) <= 1e-7 * norm(alone));
+    }
+    CHECK(reports[1].iterations == 0);
+    CHECK(reports[5].iterations == 0);
+    CHECK(reports[0].iterations != reports[4].iterations);
+}
+
+TEST_CASE("bonds of a hundred million times each other's stiffness: the true residual comes down all the same") {
+    BondNetwork network = bonded_body(rough_bar({16, 6, 6}), {}).network;
+    for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
+        const double factor = std::pow(10.0, static_cast<double>(bond * 7919 % 9) - 8.0);
+        for (double* stiffness : {&network.stiffness[bond].normal, &network.stiffness[bond].shear, &network.stiffness[bond].bending,
+                                  &network.stiffness[bond].torsion})
+            *stiffness *= factor;
+    }
+    const Vector load = balanced_load(network, network.nodes() - 1, 0, Vec3(1e-6, 2e-6, 1e-6));
+    const Vector u = solved(network, load, 1e-8);
+    Vector held;
+    multiply<1>(stiffness_matrix(network), u, held);
+    add(-1.0, load, held);
+    CHECK(norm(held) <= 2e-8 * norm(load));
 }
 
 TEST_CASE("the same bytes for any number of threads") {
