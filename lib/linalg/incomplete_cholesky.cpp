@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kiln::linalg {
@@ -13,21 +14,29 @@ namespace {
 template <typename Real>
 constexpr double min_pivot = sizeof(Real) == 4 ? 1e-6 : 1e-14;
 
+/// Part of the trace beyond which a negative pivot is no rounding of factors with large contrasts.
+constexpr double breakdown = 0.01;
+
 constexpr std::size_t long_row = 64;  // blocks, from which bisection is quicker than going along
 
 }  // namespace
 
-std::optional<Eigen::Matrix3d> pivot_inverse(const Eigen::Matrix3d& pivot, double trace, double floor) {
-    const double least = floor * trace;
+std::optional<Eigen::Matrix3d> pivot_inverse(const Eigen::Matrix3d& pivot, const Eigen::Matrix3d& before, double floor) {
+    const double trace = before.trace(), least = floor * trace;
     const double first = pivot(0, 0), second = pivot(1, 1) - pivot(1, 0) * pivot(1, 0) / first;  // D of its L D L^T
     const double rest = pivot(2, 1) - pivot(2, 0) * pivot(1, 0) / first;
     const double third = pivot(2, 2) - pivot(2, 0) * pivot(2, 0) / first - rest * rest / second;
     if (first > least && second > least && third > least) return pivot.inverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(pivot);
-    const Vec3& values = modes.eigenvalues();
-    if (!(values.minCoeff() >= -least)) return std::nullopt;
-    const Vec3 inverse = (values.array() > least).select(values.cwiseInverse(), 0.0);
-    return modes.eigenvectors() * inverse.asDiagonal() * modes.eigenvectors().transpose();
+    if (!(modes.eigenvalues()[0] >= -breakdown * trace)) return std::nullopt;
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+    for (Eigen::Index mode = 0; mode < 3; ++mode) {
+        const Vec3 along = modes.eigenvectors().col(mode);
+        const double stiffness = modes.eigenvalues()[mode];
+        if (std::abs(stiffness) <= least) continue;
+        inverse += along * along.transpose() / (stiffness > 0.0 ? stiffness : along.dot(before * along));
+    }
+    return inverse;
 }
 
 template <typename Real>
@@ -89,8 +98,8 @@ void IncompleteCholesky<Real>::for_shared(std::size_t a, std::size_t a_end, std:
 template <typename Real>
 void IncompleteCholesky<Real>::eliminate(const NodeRange& range) {
     // Row by row: U_ji = A_ji - sum_k L_jk U_ik^T over the columns k that rows j and i share, L_ji = U_ji D_i^-1,
-    // D_j = A_jj - sum_i L_ji U_ji^T. Where fill that was left out would make D_j negative, row j keeps A_jj alone. So every row
-    // kept has sum_i L_ji D_i L_ji^T <= A_jj, which bounds L, and M is positive definite.
+    // D_j = A_jj - sum_i L_ji U_ji^T. Where fill that was left out makes D_j negative, row j keeps A_jj alone. So every row kept
+    // has sum_i L_ji D_i L_ji^T of A_jj at most, which bounds L, and M is positive definite.
     std::vector<Eigen::Matrix3d> upper;  // U of row j
     for (std::size_t row = range.first_node; row < range.last_node; ++row) {
         const Eigen::Matrix3d before = diagonal_[row];
@@ -106,10 +115,10 @@ void IncompleteCholesky<Real>::eliminate(const NodeRange& range) {
             block(lower_, place) = (u * block(inverse_, i).template cast<double>()).template cast<Real>();
             diagonal_[row] -= block(lower_, place).template cast<double>() * u.transpose();
         }
-        std::optional<Eigen::Matrix3d> inverse = pivot_inverse(diagonal_[row], before.trace(), min_pivot<Real>);
+        std::optional<Eigen::Matrix3d> inverse = pivot_inverse(diagonal_[row], before, min_pivot<Real>);
         if (!inverse) {
             std::fill(&lower_[block_size * begin], &lower_[block_size * end], Real{0});
-            inverse = pivot_inverse(before, before.trace(), min_pivot<Real>).value();
+            inverse = pivot_inverse(before, before, min_pivot<Real>).value_or(before);  // no number: the solve will say so
         }
         block(inverse_, row) = inverse->template cast<Real>();
     }

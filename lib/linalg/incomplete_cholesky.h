@@ -19,11 +19,11 @@ struct NodeRange {
     std::size_t begin, inside, end;
 };
 
-/// Inverse of a symmetric positive semidefinite block of which elimination left `pivot` where one of that trace stood; zero along
-/// directions whose pivot is within `floor` of the trace from zero, that is, rounding: a node that nothing but eliminated ones
-/// holds. Nothing where the pivot is negative. With zero there a preconditioner would not see that residual, and conjugate
-/// gradients would end as converged without it.
-std::optional<Eigen::Matrix3d> pivot_inverse(const Eigen::Matrix3d& pivot, double trace, double floor);
+/// Inverse of a symmetric positive semidefinite block of which elimination left `pivot` where `before` stood. Along directions
+/// whose pivot is within `floor` of the trace from zero it is zero: a node that nothing but eliminated ones holds. Along
+/// directions with a slightly negative pivot `before` counts: with zero there a preconditioner would not see that residual, and
+/// conjugate gradients would end as converged without it. Nothing where the pivot is more negative than rounding makes it.
+std::optional<Eigen::Matrix3d> pivot_inverse(const Eigen::Matrix3d& pivot, const Eigen::Matrix3d& before, double floor);
 
 /// Incomplete block factorisation L D L^T without fill, IC(0), of the 3x3 blocks inside each range; positive definite. Exact where
 /// no node of a range has two neighbours in later rows.

@@ -27,7 +27,7 @@ Eigen::Matrix3d strain_inverse_of(const ContactNetwork& network, std::span<const
     });
     Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
     for (const Eigen::Matrix3d& part : parts) strain += part;
-    return linalg::pivot_inverse(strain, strain.trace(), min_strain_pivot).value();  // a sum of positive ones
+    return linalg::pivot_inverse(strain, strain, min_strain_pivot).value_or(strain);  // or no number
 }
 
 std::vector<Pair> pairs_of(const std::vector<RigidClusters::NodePair>& rows) {
