@@ -60,7 +60,7 @@ slow() {
     run -0 --separate-stderr "$SINTER" --temperature 1200C --at-time 10s --material alumina -o fcc.kiln <<<"$touching"
     assert_equal "$stderr" ""
     near "$(density fcc.kiln 0)" 0.860176 1e-4  # 0.74048/(1 - s)^3, s^3 = 0.84375 Delta gamma t/R^4
-    run -0 --separate-stderr "$SINTER" --temperature 1200C --at-time 70s -o apart.kiln <<<"${touching//5e-8/4.9e-8}"
+    run -0 --separate-stderr "$SINTER" --material alumina --temperature 1200C --at-time 70s -o apart.kiln <<<"${touching//5e-8/4.9e-8}"
     assert_regex "$stderr" "no particles touch"
 }
 
