@@ -12,8 +12,6 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr double min_reach = 0.04;   // of the mean radius, that candidates for touch may be apart
-constexpr double guess_margin = 2.0;   // of the approach that is guessed, that makes a candidate
 constexpr double limit_stiffness = 100.0;  // of the spring at a limit, over the stiffness of the contact there: it
                                            // yields by a part in a hundred of what the contact would do without
 constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
@@ -78,7 +76,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     unit_ = *std::max_element(diffusion.begin(), diffusion.end()) /
             (physics::normal_viscosity_factor(constants_, 0.5 * radius) * radius * radius);
     lists_ = body_.lists();
-    const double reach = min_reach * radius + 2.0 * radius * guess.strain.cwiseAbs().maxCoeff();
+    const double reach = body_.candidate_reach(guess);
     const auto expected = [&](const Pair& pair) {
         return &guess == &other ? end_overlap(pair, guess) : std::max(end_overlap(pair, guess), end_overlap(pair, other));
     };
@@ -94,7 +92,7 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
             kind[row] = 2;
         else if (keep && std::binary_search(before.begin(), before.end(), pair))
             kind[row] = 1;
-        else if (start + reach > 0.0 || start + guess_margin * (expected(pair) - start) + reach > 0.0)
+        else if (start + reach > 0.0 || start + candidate_motion * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;
     });
     for (auto* part : {&pairs_, &chosen_, &left_out_, &touching_, &sticking_}) part->clear();

@@ -20,8 +20,7 @@ namespace {
 constexpr double list_margin = 0.15;    // of the mean radius, that a particle may travel before pairs are listed anew
 constexpr double margin_ahead = 2.0;    // of the travel of a fast particle, that the margin leaves
 constexpr std::size_t few = 100;        // of so many particles one may need a new list and the others keep theirs
-constexpr double candidate_factor = 2.0;   // of the motion, see Candidates::choose
-constexpr double candidate_reach = 0.02;   // of the mean radius, for each of a pair, the same
+constexpr double min_reach = 0.04;      // of the mean radius, that candidates for touch may be apart
 constexpr double coincident = 1e-9;   // of the radii, distance of centres that has no direction
 constexpr const char* offset_name = "offset";  // array of necks in a checkpoint
 
@@ -257,11 +256,15 @@ double SinteringBody::travel(std::size_t row, const Motion& motion) const {
            motion.strain.cwiseAbs().maxCoeff() * (state_.particles.radius[row] + margin_[row]);
 }
 
+double SinteringBody::candidate_reach(const Motion& motion) const {
+    return min_reach * mean_radius_ + 2.0 * mean_radius_ * motion.strain.cwiseAbs().maxCoeff();
+}
+
 void SinteringBody::cover(const Motion& motion, double factor) {
     // Candidates are chosen by twice the motion that is guessed and a distance to spare: where growing grains use up margins, all
     // of those are to be in the list, so that a run does not depend on when it was made.
-    const double spare = grains_change_ ? (candidate_reach + motion.strain.cwiseAbs().maxCoeff()) * mean_radius_ : 0.0;
-    if (grains_change_) factor = std::max(factor, candidate_factor);
+    const double spare = grains_change_ ? 0.5 * candidate_reach(motion) : 0.0;  // for each of a pair
+    if (grains_change_) factor = std::max(factor, candidate_motion);
     std::vector<std::uint8_t> beyond(size());
     std::size_t count = 0;
 #pragma omp parallel for schedule(static) reduction(+ : count) if (size() >= worth_threads)

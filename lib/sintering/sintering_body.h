@@ -22,6 +22,9 @@ struct Grains {
     std::vector<double> offset;   // m, of each of them: e in the overlap h = r1 + r2 - d + e that the force law sees
 };
 
+/// Times the approach that a guess says, by which a pair that comes to touch is a candidate.
+inline constexpr double candidate_motion = 2.0;
+
 /// Owns the state while it sinters. Particles stand in the order of a space-filling curve, positions unwrapped, so that the images
 /// of pairs stay what they were when the list was made.
 class SinteringBody {
@@ -41,6 +44,9 @@ class SinteringBody {
 
     /// Pairs that touch or may come to touch while each particle has margin left to travel; sorted.
     const std::vector<Pair>& pairs() const { return pairs_; }
+
+    /// Distance, m, that a pair is taken to close beside what a motion says of it when candidates for touch are chosen.
+    double candidate_reach(const Motion& motion) const;
 
     /// Makes the list of pairs hold all that touch under `factor` times a motion, if it does not.
     void cover(const Motion& motion, double factor = 1.0);
