@@ -12,9 +12,13 @@ constexpr double rounding = 1e-6;  // of linear solves
 
 }  // namespace
 
+double young_bound(const physics::IsotropicModuli& solid, double relative_density) {
+    return physics::porous_bound(solid, std::clamp(relative_density, 0.0, 1.0)).young();
+}
+
 std::optional<std::string> above_bound_warning(double young_modulus, const physics::IsotropicModuli& solid,
                                                double relative_density) {
-    const double bound = physics::porous_bound(solid, std::clamp(relative_density, 0.0, 1.0)).young();
+    const double bound = young_bound(solid, relative_density);
     if (!(young_modulus > bound * (1.0 + rounding))) return std::nullopt;
     char words[400];
     std::snprintf(

@@ -13,4 +13,7 @@ namespace kiln::analysis {
 std::optional<std::string> above_bound_warning(double young_modulus, const physics::IsotropicModuli& solid,
                                                double relative_density);
 
+/// The most that it can have, Pa. A body denser than dense, by the rounding of overlaps, counts as the solid.
+double young_bound(const physics::IsotropicModuli& solid, double relative_density);
+
 }  // namespace kiln::analysis

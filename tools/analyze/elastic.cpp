@@ -143,9 +143,10 @@ Json of_network(const State& state, const mechanics::BondModel& model, double to
                        {"rattlers", body.rattlers},
                        {"negligible_bonds", body.negligible_bonds}});
     const physics::IsotropicModuli solid = solid_of(state);
-    result["bound"] = physics::porous_bound(solid, std::min(relative_density(state), 1.0)).young();
+    const double density = result["relative_density"];
+    result["bound"] = analysis::young_bound(solid, density);
     result["warnings"] = Json::array();
-    if (const auto sentence = analysis::above_bound_warning(result["young_modulus"], solid, relative_density(state)))
+    if (const auto sentence = analysis::above_bound_warning(result["young_modulus"], solid, density))
         result["warnings"].push_back(*sentence);
     return result;
 }
