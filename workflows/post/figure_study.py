@@ -60,6 +60,15 @@ def shade_beyond(axes, cases):
         axes.set_xlim(right=right)
 
 
+def finish(axes, cases, quantity):
+    """What a figure of a quantity against density ends with."""
+    shade_beyond(axes, cases)
+    axes.set(xlabel="Relative density", ylabel=quantity)
+    axes.set_ylim(bottom=0)
+    if len(cases) <= MANY:
+        axes.legend(fontsize="small", loc="upper left")
+
+
 def legend(axes, cases):
     if 1 < len(cases) <= MANY:
         axes.legend(fontsize="small" if len(cases) <= 4 else "xx-small", loc="best")
@@ -142,11 +151,7 @@ def modulus(cases, measured, colours):
     if points:
         axes.plot([point["relative_density"] for point in points], [point["young_modulus"] / GPA for point in points], "s",
                   color="black", label="measured")
-    shade_beyond(axes, cases)
-    axes.set(xlabel="Relative density", ylabel="Young's modulus, GPa")
-    axes.set_ylim(bottom=0)
-    if len(cases) <= MANY:
-        axes.legend(fontsize="small", loc="upper left")
+    finish(axes, cases, "Young's modulus, GPa")
     return figure
 
 
@@ -159,11 +164,7 @@ def conductivity(cases, _, colours):
     bounds = sorted((row["relative_density"]["mean"], row["conductivity_bound"]) for case in cases for row in case["states"]
                     if "conductivity_bound" in row)
     axes.plot(*zip(*bounds), color=style.REFERENCE, linestyle="--", linewidth=1.0, label="Hashin\u2013Shtrikman bound")
-    shade_beyond(axes, cases)
-    axes.set(xlabel="Relative density", ylabel="Conductivity, W/(m K)")
-    axes.set_ylim(bottom=0)
-    if len(cases) <= MANY:
-        axes.legend(fontsize="small", loc="upper left")
+    finish(axes, cases, "Conductivity, W/(m K)")
     return figure
 
 
