@@ -22,8 +22,9 @@ OPTIMISE := -O3 -DNDEBUG
 ifeq ($(NATIVE),1)
 OPTIMISE += -march=native
 endif
-CXXFLAGS  = -std=c++20 -g1 $(OPTIMISE) $(WARNINGS) -fopenmp -fno-math-errno -Ilib -I. -isystem /usr/include/eigen3 $(EXTRA)
-LDFLAGS  := -fopenmp $(EXTRA)
+CXXFLAGS  = -std=c++20 -g1 $(OPTIMISE) $(WARNINGS) -pthread -fopenmp-simd -fno-math-errno -Ilib -I. -isystem /usr/include/eigen3 \
+            $(EXTRA)
+LDFLAGS  := -pthread $(EXTRA)
 
 TOOLS        := sinter bondify bend analyze
 LIB_SOURCES  := $(wildcard lib/*/*.cpp)

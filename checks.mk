@@ -1,8 +1,6 @@
 # checks.mk: what looks for faults besides the tests: relations, sanitizers, clang-tidy, a comparison of builds. None is needed
 # for `make test`.
 TIDY        ?= clang-tidy-14
-TSAN_CXX    ?= clang++-14
-ARCHER      ?= /usr/lib/llvm-14/lib/libarcher.so
 
 # Trials of each relation, and the seed of the first.
 TRIALS      ?= 8
@@ -21,13 +19,9 @@ asan:                           ## build with address and undefined-behaviour sa
 	SANITIZED=1 $(MAKE) BUILD=build-asan EXTRA="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" \
 	    OPTIMISE="-O1 -UNDEBUG" test
 
-# OpenMP's barriers are known to the sanitizer through libomp and its tool Archer; gcc's libgomp would look like a race throughout.
 tsan:                           ## build with the thread sanitizer into build-tsan and run the whole chain on four threads
-	@command -v $(TSAN_CXX) >/dev/null && test -e $(ARCHER) || \
-	    { echo "make tsan needs the Debian packages $(TSAN_PACKAGES)" >&2; exit 1; }
-	$(MAKE) BUILD=build-tsan CXX=$(TSAN_CXX) EXTRA=-fsanitize=thread OPTIMISE="-O1 -DNDEBUG" all
-	TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" OMP_TOOL_LIBRARIES=$(ARCHER) \
-	    BUILD=$(abspath build-tsan) tests/chain.sh build-tsan/chain 4
+	$(MAKE) BUILD=build-tsan EXTRA=-fsanitize=thread OPTIMISE="-O1 -DNDEBUG" all
+	TSAN_OPTIONS=halt_on_error=1 BUILD=$(abspath build-tsan) tests/chain.sh build-tsan/chain 4
 	@echo "no data race"
 
 TIDY_STAMPS := $(patsubst %.cpp,$(BUILD)/tidy/%.ok,$(LIB_SOURCES) $(wildcard tools/*/*.cpp))
@@ -37,7 +31,7 @@ tidy: $(TIDY_STAMPS)            ## clang-tidy over lib and tools; .clang-tidy sa
 $(BUILD)/tidy/%.ok: %.cpp .clang-tidy
 	@command -v $(TIDY) >/dev/null || { echo "make tidy needs the Debian package $(TIDY_PACKAGES)" >&2; exit 1; }
 	@mkdir -p $(@D)
-	$(TIDY) --quiet $< -- -std=c++20 -fopenmp -Ilib -I. -isystem /usr/include/eigen3
+	$(TIDY) --quiet $< -- -std=c++20 -fopenmp-simd -Ilib -I. -isystem /usr/include/eigen3
 	@touch $@
 
 # The preconditioner rounds in another order at -O2, so it is compiled alike; docs/reliability.md says what that means.

@@ -9,7 +9,6 @@ NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
 OPTIONAL_PACKAGES := mypy python3-pandas slurmctld slurmd slurm-client munge
 # Further checks, by hand only: `make fuzz`, `make tsan`, `make tidy`.
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
-TSAN_PACKAGES := $(FUZZ_PACKAGES) libomp-14-dev
 TIDY_PACKAGES := clang-tidy-14
 PACKAGES := $(BUILD_PACKAGES) $(TEST_PACKAGES) $(PICTURE_PACKAGES)
 

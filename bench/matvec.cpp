@@ -1,13 +1,12 @@
 // matvec.cpp: memory traffic of the product of a contact network's stiffness with a vector, and of its preconditioner, beside that
 // of a triad a = b + s c in the same run. JSON lines; argument: number of particles along an edge (default 60: 216,000).
-#include <omp.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <random>
 
+#include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "io/json.h"
 #include "sintering/preconditioner.h"
@@ -33,7 +32,7 @@ double best_seconds(const Work& work) {
 
 void say(const char* part, double bytes, double seconds) {
     std::cout << Json{{"bench", "matvec"}, {"case", part}, {"bytes", bytes}, {"seconds", seconds},
-                      {"gigabytes_per_second", 1e-9 * bytes / seconds}, {"threads", omp_get_max_threads()}}
+                      {"gigabytes_per_second", 1e-9 * bytes / seconds}, {"threads", threads()}}
                      .dump()
               << std::endl;
 }
@@ -41,8 +40,7 @@ void say(const char* part, double bytes, double seconds) {
 void triad(std::size_t size) {
     std::vector<double> a(size), b(size, 1.0), c(size, 2.0);
     const auto pass = [&] {
-#pragma omp parallel for schedule(static)
-        for (std::size_t k = 0; k < size; ++k) a[k] = b[k] + 3.0 * c[k];
+        for_rows(size, [&](std::size_t k) { a[k] = b[k] + 3.0 * c[k]; });
     };
     pass();
     say("triad", 24.0 * static_cast<double>(size), best_seconds(pass));

@@ -27,8 +27,6 @@ ifneq ($(OUT),$(abspath $(OUT)))
 $(error OUT=$(OUT) is not an absolute path; try OUT=$$PWD/$(OUT))
 endif
 
-export OMP_WAIT_POLICY ?= passive# stages that run side by side (-j) must not wait for their threads with busy cores
-
 comma := ,
 empty :=
 space := $(empty) $(empty)

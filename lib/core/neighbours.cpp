@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/grouping.h"
+#include "core/parallel.h"
 
 namespace kiln {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::int64_t max_cells = 1 << 20;  // along an axis, so that a cell's 
 constexpr double rounding_margin = 1e-9;      // in cells, so that no pair is lost to the rounding of a cell coordinate
 constexpr double farthest_home = 1e9;         // boxes that a position may be away from the box
 constexpr std::size_t chunk_particles = 512;  // particles a task; fixed, whatever the number of threads
-constexpr std::size_t worth_threads = 16;     // tasks from which it pays to wake and join threads
+constexpr std::size_t fewest_tasks = 16;      // from which it pays to wake threads
 
 struct Entry {
     Vec3 position;                     // m, as given
@@ -226,11 +227,11 @@ std::vector<Pair> sorted_pairs(std::span<const std::vector<Pair>> chunks, std::s
         for (const auto& chunk : chunks)
             for (const Pair& pair : chunk) visit(static_cast<std::size_t>(pair.i), pair);
     });
-#pragma omp parallel for schedule(static) if (chunks.size() >= worth_threads)
-    for (std::size_t row = 0; row < particles; ++row)
+    for_rows(particles, [&](std::size_t row) {
         std::sort(pairs.items.begin() + static_cast<std::ptrdiff_t>(pairs.begin[row]),
                   pairs.items.begin() + static_cast<std::ptrdiff_t>(pairs.begin[row + 1]),
                   [](const Pair& a, const Pair& b) { return a.j != b.j ? a.j < b.j : a.image < b.image; });
+    });
     return std::move(pairs.items);
 }
 
@@ -238,17 +239,7 @@ std::vector<Pair> sorted_pairs(std::span<const std::vector<Pair>> chunks, std::s
 template <typename Search>
 std::vector<Pair> search_tasks(std::size_t tasks, std::size_t particles, const Search& search) {
     std::vector<std::vector<Pair>> chunks(tasks);
-    std::vector<std::string> errors(tasks);
-#pragma omp parallel for schedule(dynamic) if (tasks >= worth_threads)
-    for (std::size_t task = 0; task < tasks; ++task) {
-        try {  // an exception must not leave a parallel loop
-            chunks[task] = search(task);
-        } catch (const Error& error) {
-            errors[task] = error.what();
-        }
-    }
-    for (const std::string& error : errors)
-        if (!error.empty()) throw Error(error);
+    for_chunks(tasks, [&](std::size_t task) { chunks[task] = search(task); }, fewest_tasks);
     return sorted_pairs(chunks, particles);
 }
 

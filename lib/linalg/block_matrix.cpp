@@ -12,7 +12,7 @@ namespace {
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 
-constexpr std::int64_t rows_in_chunk = 1024;
+constexpr std::int32_t rows_in_chunk = 1024;
 
 /// Rows of a product one at a time. `terms(row, visit)` calls visit(left block, row of b, transposed) for each term of the row.
 template <typename Terms>
@@ -20,11 +20,15 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
     BlockMatrix result;
     result.columns = b.columns;
     result.start.assign(at(rows) + 1, 0);
-#pragma omp parallel if (rows > worth_threads)
-    {
+    const auto for_row_chunks = [&](const auto& work) {
+        for_chunks(at((rows + rows_in_chunk - 1) / rows_in_chunk), [&](std::size_t chunk) {
+            const std::int32_t first = static_cast<std::int32_t>(chunk) * rows_in_chunk;
+            work(first, std::min(rows, first + rows_in_chunk));
+        });
+    };
+    for_row_chunks([&](std::int32_t first_row, std::int32_t last_row) {
         std::vector<std::int32_t> seen(at(b.columns), -1);
-#pragma omp for schedule(dynamic, rows_in_chunk)
-        for (std::int32_t row = 0; row < rows; ++row) {
+        for (std::int32_t row = first_row; row < last_row; ++row) {
             std::int64_t count = 0;
             terms(row, [&](const Mat6&, std::int32_t middle) {
                 for (std::int64_t k = b.first(middle); k < b.last(middle); ++k) {
@@ -35,15 +39,13 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
             });
             result.start[at(row) + 1] = count;
         }
-    }
+    });
     for (std::size_t row = 0; row < at(rows); ++row) result.start[row + 1] += result.start[row];
     result.column.resize(at(result.start.back()));
     result.block.resize(at(result.start.back()));
-#pragma omp parallel if (rows > worth_threads)
-    {
+    for_row_chunks([&](std::int32_t first_row, std::int32_t last_row) {
         std::vector<std::int64_t> slot(at(b.columns), -1);
-#pragma omp for schedule(dynamic, rows_in_chunk)
-        for (std::int32_t row = 0; row < rows; ++row) {
+        for (std::int32_t row = first_row; row < last_row; ++row) {
             const std::int64_t first = result.first(row);
             std::int64_t end = first;
             terms(row, [&](const Mat6&, std::int32_t middle) {
@@ -66,7 +68,7 @@ BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& te
             });
             for (std::int64_t k = first; k < end; ++k) slot[at(result.column[at(k)])] = -1;
         }
-    }
+    });
     return result;
 }
 
@@ -90,8 +92,7 @@ ColumnIndex column_index(const BlockMatrix& matrix) {
 template <int width>
 void multiply(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y) {
     y.resize(at(matrix.rows()));
-#pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
-    for (std::int32_t row = 0; row < matrix.rows(); ++row) y[at(row)] = row_of_product(matrix, row, x);
+    for_rows(y.size(), [&](std::size_t row) { y[row] = row_of_product(matrix, static_cast<std::int32_t>(row), x); }, worth_threads);
 }
 
 template <int width>
@@ -110,8 +111,9 @@ PerField<width> multiply_and_dot(const BlockMatrix& matrix, const Batch<width>& 
 template <int width>
 void residual(const BlockMatrix& matrix, const Batch<width>& x, const Batch<width>& b, Batch<width>& r) {
     r.resize(at(matrix.rows()));
-#pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
-    for (std::int32_t row = 0; row < matrix.rows(); ++row) r[at(row)] = b[at(row)] - row_of_product(matrix, row, x);
+    for_rows(r.size(), [&](std::size_t row) {
+        r[row] = b[row] - row_of_product(matrix, static_cast<std::int32_t>(row), x);
+    }, worth_threads);
 }
 
 template void multiply(const BlockMatrix&, const Batch<1>&, Batch<1>&);
@@ -147,13 +149,11 @@ double dot(const Vector& x, const Vector& y) {
 double norm(const Vector& x) { return std::sqrt(dot(x, x)); }
 
 void add(double factor, const Vector& x, Vector& y) {
-#pragma omp parallel for schedule(static) if (x.size() > worth_threads)
-    for (std::size_t i = 0; i < x.size(); ++i) y[i] += factor * x[i];
+    for_rows(x.size(), [&](std::size_t i) { y[i] += factor * x[i]; }, worth_threads);
 }
 
 void combine(const Vector& x, double factor, Vector& y) {
-#pragma omp parallel for schedule(static) if (x.size() > worth_threads)
-    for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] + factor * y[i];
+    for_rows(x.size(), [&](std::size_t i) { y[i] = x[i] + factor * y[i]; }, worth_threads);
 }
 
 }  // namespace kiln::linalg

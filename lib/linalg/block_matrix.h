@@ -32,7 +32,7 @@ template <int width>
 using PerField = Eigen::Array<double, 1, width>;
 
 /// Rows, bonds or pairs from which it pays to wake threads for a loop over them.
-inline constexpr int worth_threads = 1500;
+inline constexpr std::size_t worth_threads = 1500;
 
 /// Compressed rows; columns ascend within a row.
 template <typename Real>

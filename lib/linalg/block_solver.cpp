@@ -111,8 +111,7 @@ class Pass {
     /// p = z + ratio p.
     void turn(const PerField<width>& ratio) {
         const auto factors = ratio.matrix().asDiagonal();
-#pragma omp parallel for schedule(static) if (p_.size() > worth_threads)
-        for (std::size_t i = 0; i < p_.size(); ++i) p_[i] = z_[i] + p_[i] * factors;
+        for_rows(p_.size(), [&](std::size_t i) { p_[i] = z_[i] + p_[i] * factors; }, worth_threads);
     }
 
     const BlockMatrix& matrix_;

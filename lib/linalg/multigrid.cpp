@@ -22,12 +22,12 @@ std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 
 std::vector<Mat6> inverse_diagonal(const BlockMatrix& matrix) {
     std::vector<Mat6> inverse(at(matrix.rows()));
-#pragma omp parallel for schedule(static) if (matrix.rows() > worth_threads)
-    for (std::int32_t row = 0; row < matrix.rows(); ++row) {
+    for_rows(inverse.size(), [&](std::size_t index) {
+        const auto row = static_cast<std::int32_t>(index);
         for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-            if (matrix.column[at(k)] == row) inverse[at(row)] = matrix.block[at(k)].llt().solve(Mat6::Identity());
+            if (matrix.column[at(k)] == row) inverse[index] = matrix.block[at(k)].llt().solve(Mat6::Identity());
         }
-    }
+    }, worth_threads);
     return inverse;
 }
 
@@ -42,8 +42,7 @@ double max_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& invers
         const double scale = 1.0 / norm(x);
         for (Vec6& each : x) each *= scale;
         multiply(matrix, x, y);
-#pragma omp parallel for schedule(static) if (y.size() > worth_threads)
-        for (std::size_t i = 0; i < y.size(); ++i) x[i] = inverse[i] * y[i];
+        for_rows(y.size(), [&](std::size_t i) { x[i] = inverse[i] * y[i]; }, worth_threads);
         value = norm(x);
     }
     return power_margin * value;
@@ -52,15 +51,15 @@ double max_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& invers
 /// (I - omega D^-1 A) P.
 BlockMatrix smoothed(const BlockMatrix& matrix, const std::vector<Mat6>& inverse, double omega, const BlockMatrix& rigid) {
     BlockMatrix result = product(matrix, rigid);
-#pragma omp parallel for schedule(static) if (result.rows() > worth_threads)
-    for (std::int32_t row = 0; row < result.rows(); ++row) {
-        const Mat6 factor = -omega * inverse[at(row)];
+    for_rows(inverse.size(), [&](std::size_t index) {
+        const auto row = static_cast<std::int32_t>(index);
+        const Mat6 factor = -omega * inverse[index];
         for (std::int64_t k = result.first(row); k < result.last(row); ++k) {
             Mat6& block = result.block[at(k)];
             block = factor * block;
-            if (result.column[at(k)] == rigid.column[at(row)]) block += rigid.block[at(row)];
+            if (result.column[at(k)] == rigid.column[index]) block += rigid.block[index];
         }
-    }
+    }, worth_threads);
     return result;
 }
 
@@ -79,8 +78,7 @@ Eigen::MatrixXd dense(const BlockMatrix& matrix) {
 template <typename Real>
 std::vector<Eigen::Matrix<Real, 6, 6>> rounded(const std::vector<Mat6>& blocks, double factor) {
     std::vector<Eigen::Matrix<Real, 6, 6>> result(blocks.size());
-#pragma omp parallel for schedule(static) if (blocks.size() > worth_threads)
-    for (std::size_t k = 0; k < blocks.size(); ++k) result[k] = (factor * blocks[k]).template cast<Real>();
+    for_rows(blocks.size(), [&](std::size_t k) { result[k] = (factor * blocks[k]).template cast<Real>(); }, worth_threads);
     return result;
 }
 
@@ -171,30 +169,27 @@ void BasicMultigrid<Real>::smooth(const Level& level, Fields<lanes>& fields, boo
     const double first_rho = delta / theta, second_rho = 1.0 / (2.0 * theta / delta - first_rho);
     const std::array factors{std::array{0.0, 1.0 / theta}, std::array{second_rho * first_rho, 2.0 * second_rho / delta}};
     auto& [load, solution, steps] = fields;
-    // clang lets no structured binding into a parallel loop
+    // clang lets no structured binding into a lambda
     std::vector<Values<Real, lanes>>&loads = load, &x = solution, &last = steps;
     for (std::size_t step = 0; step < factors.size(); ++step) {
         const Real memory = static_cast<Real>(factors[step][0]), gain = static_cast<Real>(factors[step][1]);
         if (from_zero && step == 0) {
-#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
-            for (std::size_t i = 0; i < level.nodes; ++i) {
+            for_rows(level.nodes, [&](std::size_t i) {
                 last[i] = gain * block_product(level.inverse_diagonal[i], loads[i]);
                 x[i] = last[i];
-            }
+            }, worth_threads);
             continue;
         }
         const bool first = step == 0;  // whatever stands in the step is not from this iteration
-#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
-        for (std::size_t i = 0; i < level.nodes; ++i) {
+        for_rows(level.nodes, [&](std::size_t i) {
             const Values<Real, lanes> rest = loads[i] - row_of_product(level.matrix, i, x);
             const Values<Real, lanes> change = gain * block_product(level.inverse_diagonal[i], rest);
             if (first)
                 last[i] = change;
             else
                 last[i] = memory * last[i] + change;
-        }
-#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
-        for (std::size_t i = 0; i < level.nodes; ++i) x[i] += last[i];
+        }, worth_threads);
+        for_rows(level.nodes, [&](std::size_t i) { x[i] += last[i]; }, worth_threads);
     }
 }
 
@@ -216,19 +211,20 @@ void BasicMultigrid<Real>::cycle(std::size_t index) {
     const Level& level = levels_[index];
     Fields<lanes>& coarser = fields<lanes>()[index + 1];
     smooth(level, here, true);
-#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
-    for (std::size_t i = 0; i < level.nodes; ++i) here.step[i] = here.load[i] - row_of_product(level.matrix, i, here.solution);
-#pragma omp parallel for schedule(static) if (coarser.load.size() > worth_threads)
-    for (std::size_t a = 0; a < coarser.load.size(); ++a) {
+    for_rows(level.nodes, [&](std::size_t i) {
+        here.step[i] = here.load[i] - row_of_product(level.matrix, i, here.solution);
+    }, worth_threads);
+    for_rows(coarser.load.size(), [&](std::size_t a) {
         const auto entries = level.restriction.of(a);
         coarser.load[a] = sum_of_terms<Real, lanes, true>(std::ssize(entries), [&](std::int64_t k) {
             const auto [row, block] = entries[at(k)];
             return Term<Real, lanes>{&level.prolongation.block[at(block)], &here.step[at(row)]};
         });
-    }
+    }, worth_threads);
     cycle<lanes>(index + 1);
-#pragma omp parallel for schedule(static) if (level.nodes > worth_threads)
-    for (std::size_t i = 0; i < level.nodes; ++i) here.solution[i] += row_of_product(level.prolongation, i, coarser.solution);
+    for_rows(level.nodes, [&](std::size_t i) {
+        here.solution[i] += row_of_product(level.prolongation, i, coarser.solution);
+    }, worth_threads);
     smooth(level, here, false);
 }
 
@@ -247,13 +243,13 @@ void BasicMultigrid<Real>::apply(const Batch<width>& r, Batch<width>& z) {
     const PerField<width> inwards = (size > 0.0).select(size.inverse(), 0.0), outwards = scale_ * size;
     std::vector<Values<Real, lanes>>&load = all.front().load, &solution = all.front().solution;
     z.resize(r.size());
-#pragma omp parallel for schedule(static) if (r.size() > worth_threads)
-    for (std::size_t i = 0; i < r.size(); ++i)
+    for_rows(r.size(), [&](std::size_t i) {
         load[i].template leftCols<width>() = (r[i] * inwards.matrix().asDiagonal()).template cast<Real>();
+    }, worth_threads);
     cycle<lanes>(0);
-#pragma omp parallel for schedule(static) if (r.size() > worth_threads)
-    for (std::size_t i = 0; i < r.size(); ++i)
+    for_rows(r.size(), [&](std::size_t i) {
         z[i] = solution[i].template leftCols<width>().template cast<double>() * outwards.matrix().asDiagonal();
+    }, worth_threads);
 }
 
 template class BasicMultigrid<float>;

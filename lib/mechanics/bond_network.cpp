@@ -212,8 +212,8 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
         matrix.start.push_back(static_cast<std::int64_t>(matrix.column.size()));
     }
     matrix.block.assign(matrix.column.size(), Mat6::Zero());
-#pragma omp parallel for schedule(static) if (nodes > worth_threads)
-    for (std::int32_t node = 0; node < nodes; ++node) {
+    for_rows(network.nodes(), [&](std::size_t index) {
+        const auto node = static_cast<std::int32_t>(index);
         const auto begin = matrix.column.begin() + matrix.first(node), end = matrix.column.begin() + matrix.last(node);
         const auto block_at = [&](std::int32_t column) -> Mat6& {
             return matrix.block[at(std::lower_bound(begin, end, column) - matrix.column.begin())];
@@ -232,14 +232,13 @@ BlockMatrix stiffness_matrix(const BondNetwork& network) {
                 block_at(i) += blocks.ij.transpose();
             }
         }
-    }
+    }, worth_threads);
     return matrix;
 }
 
 std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement, const Mat3& strain) {
     std::vector<BondLoad> loads(network.bonds());
-#pragma omp parallel for schedule(static) if (network.bonds() > worth_threads)
-    for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
+    for_rows(network.bonds(), [&](std::size_t bond) {
         const Vec6& first = displacement[at(network.pair[bond][0])];
         const Vec6& second = displacement[at(network.pair[bond][1])];
         const Vec3& d = network.vector[bond];
@@ -251,7 +250,7 @@ std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displ
         loads[bond].force = k.displacement * opening;
         loads[bond].moment = k.rotation * turning;
         loads[bond].tension = loads[bond].force.dot(d.normalized());
-    }
+    }, worth_threads);
     return loads;
 }
 
@@ -264,22 +263,20 @@ physics::BondStress stress_of(const BondNetwork& network, std::size_t bond, cons
 
 Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads) {
     const Grouping<std::int32_t> incidence = find_incidence(network.nodes(), network.pair);
-    const auto nodes = static_cast<std::int32_t>(network.nodes());
     Vector forces(network.nodes(), Vec6::Zero());
-#pragma omp parallel for schedule(static) if (nodes > worth_threads)
-    for (std::int32_t node = 0; node < nodes; ++node) {
-        for (const std::int32_t row : incidence.of(at(node))) {
+    for_rows(network.nodes(), [&](std::size_t node) {
+        for (const std::int32_t row : incidence.of(node)) {
             const auto bond = at(row);
             const BondLoad& load = loads[bond];
             const Vec3 moment = 0.5 * network.vector[bond].cross(load.force);
             for (const int end : {0, 1}) {
-                if (network.pair[bond][at(end)] != node) continue;
+                if (at(network.pair[bond][at(end)]) != node) continue;
                 const double sign = end == 0 ? 1.0 : -1.0;
-                forces[at(node)].head<3>() += sign * load.force;
-                forces[at(node)].tail<3>() += (moment + sign * load.moment) / network.rotation_length;
+                forces[node].head<3>() += sign * load.force;
+                forces[node].tail<3>() += (moment + sign * load.moment) / network.rotation_length;
             }
         }
-    }
+    }, worth_threads);
     return forces;
 }
 

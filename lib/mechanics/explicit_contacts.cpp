@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.h"
 #include "physics/bond_motion.h"
 #include "physics/hertz.h"
 
@@ -52,12 +53,9 @@ void ExplicitContacts::search(const Vector& displacement) {
 
 /// m. While no particle has gone farther than half the margin, no two that were not near each other have met.
 double ExplicitContacts::farthest_since_search(const Vector& displacement) const {
-    double farthest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : farthest) if (displacement.size() > worth_threads)
-    for (std::size_t node = 0; node < displacement.size(); ++node) {
-        farthest = std::max(farthest, (displacement[node] - searched_at_[node]).head<3>().squaredNorm());
-    }
-    return std::sqrt(farthest);
+    return std::sqrt(greatest_of_rows(displacement.size(), 0.0, [&](std::size_t node) {
+        return (displacement[node] - searched_at_[node]).head<3>().squaredNorm();
+    }));
 }
 
 /// Moves the tangential spring along by `slide`, m, the way of the other surface against the sphere's; force on the sphere, N.
@@ -77,12 +75,11 @@ Vec3 ExplicitContacts::friction_force(const Touch& touch, const Vec3& slide, phy
 
 void ExplicitContacts::add_pairs(const Vector& displacement, const Vector& velocity, double dt, Vector& force) {
     const double length = network_.rotation_length;
-#pragma omp parallel for schedule(static) if (pairs_.size() > worth_threads)
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    for_rows(pairs_.size(), [&](std::size_t k) {
         const PairContact& pair = pairs_[k];
         const Vec3 shift = displacement[at(pair.j)].head<3>() - displacement[at(pair.i)].head<3>();
         overlap_[k] = -physics::lengthening(pair.vector, shift) - pair.gap;
-    }
+    }, worth_threads);
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         if (overlap_[k] <= 0.0) {
             loss_ += std::exchange(pair_spring_[k], {}).energy();

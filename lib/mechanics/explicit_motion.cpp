@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "physics/hertz.h"
 
 namespace kiln::mechanics {
@@ -78,8 +79,7 @@ void ExplicitMotion::place(const Vector& displacement, double travel) {
 /// force where it drives the motion, and adds it where it brakes.
 void ExplicitMotion::kick_and_drift() {
     const double dt = time_step_, damping = model_.damping;
-#pragma omp parallel for schedule(static) if (velocity_.size() > worth_threads)
-    for (std::size_t node = 0; node < velocity_.size(); ++node) {
+    for_rows(velocity_.size(), [&](std::size_t node) {
         Vec6& v = velocity_[node];
         double lost = 0.0;
         for (int k = 0; k < 6; ++k) {
@@ -90,13 +90,12 @@ void ExplicitMotion::kick_and_drift() {
         }
         damped_[node] += lost;
         displacement_[node] += dt * v;
-    }
+    }, worth_threads);
 }
 
 void ExplicitMotion::move_bonds() {
     const double dt = time_step_, per_length = 1.0 / network_.rotation_length;
-#pragma omp parallel for schedule(static) if (hold_.size() > worth_threads)
-    for (std::size_t bond = 0; bond < hold_.size(); ++bond) {
+    for_rows(hold_.size(), [&](std::size_t bond) {
         const std::size_t i = at(network_.pair[bond][0]), j = at(network_.pair[bond][1]);
         const Vec3 shift = displacement_[j].head<3>() - displacement_[i].head<3>();
         const Vec3 step = dt * (velocity_[j].head<3>() - velocity_[i].head<3>());
@@ -108,13 +107,12 @@ void ExplicitMotion::move_bonds() {
         const double tension = k.normal * physics::lengthening(network_.vector[bond], shift);
         bond_force_[bond] = tension / vector.norm() * vector + hold.shear;
         shear_moment_[bond] = 0.5 * vector.cross(hold.shear);
-    }
+    }, worth_threads);
 }
 
 void ExplicitMotion::gather() {
     const double per_length = 1.0 / network_.rotation_length;
-#pragma omp parallel for schedule(static) if (force_.size() > worth_threads)
-    for (std::size_t node = 0; node < force_.size(); ++node) {
+    for_rows(force_.size(), [&](std::size_t node) {
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
         for (const std::int32_t row : incidence_.of(node)) {
             const std::size_t bond = at(row);
@@ -123,7 +121,7 @@ void ExplicitMotion::gather() {
             moment += shear_moment_[bond] + side * hold_[bond].moment;
         }
         force_[node] << force, per_length * moment;
-    }
+    }, worth_threads);
 }
 
 void ExplicitMotion::step(double punch_velocity) {

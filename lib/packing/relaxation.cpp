@@ -7,6 +7,7 @@
 
 #include "core/grouping.h"
 #include "core/neighbours.h"
+#include "core/parallel.h"
 
 namespace kiln::packing {
 
@@ -16,7 +17,6 @@ constexpr double margin = 0.3;     // of its radius that a particle may move bef
 constexpr double time_step = 0.2;  // the unit of time is that of h'' = -2 h for the overlap h of a pair
 constexpr double at_rest = 1e-4;   // net force over contact force, both root mean square, below which the packing counts as jammed
 constexpr std::size_t chunk = 1024;  // particles whose sums are formed together; fixed, so that sums do not depend on threads
-constexpr std::size_t worth_threads = 8192;  // particles from which a step takes longer than waking and joining threads
 
 struct Neighbour {
     std::int32_t row;
@@ -89,10 +89,10 @@ Vec3 acceleration_of(std::size_t row, const Box& box, std::span<const double> ra
 Sums accelerate(const Box& box, std::span<const double> radius, std::span<const Vec3> position, const Lists& lists,
                 std::vector<Vec3>& acceleration) {
     std::vector<Sums> partial((radius.size() + chunk - 1) / chunk);
-#pragma omp parallel for schedule(static) if (radius.size() >= worth_threads)
-    for (std::size_t part = 0; part < partial.size(); ++part)
+    for_chunks(partial.size(), [&](std::size_t part) {
         for (std::size_t row = part * chunk; row < std::min((part + 1) * chunk, radius.size()); ++row)
             acceleration[row] = acceleration_of(row, box, radius, position, lists, partial[part]);
+    }, worth_threads / chunk);
     Sums sums;
     for (const Sums& each : partial) sums.add(each);
     return sums;
@@ -102,15 +102,12 @@ Sums accelerate(const Box& box, std::span<const double> radius, std::span<const 
 /// radii.
 double step(std::span<const double> radius, std::span<const Vec3> acceleration, double damping, const Lists& lists,
             std::vector<Vec3>& velocity, std::vector<Vec3>& position) {
-    double farthest = 0.0;
     const double kept = 1.0 / (1.0 + damping * time_step);
-#pragma omp parallel for schedule(static) reduction(max : farthest) if (radius.size() >= worth_threads)
-    for (std::size_t row = 0; row < radius.size(); ++row) {
+    return std::sqrt(greatest_of_rows(radius.size(), 0.0, [&](std::size_t row) {
         velocity[row] = kept * (velocity[row] + time_step * acceleration[row]);
         position[row] += time_step * velocity[row];
-        farthest = std::max(farthest, (position[row] - lists.position[row]).squaredNorm() / (radius[row] * radius[row]));
-    }
-    return std::sqrt(farthest);
+        return (position[row] - lists.position[row]).squaredNorm() / (radius[row] * radius[row]);
+    }));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/parallel.h"
 #include "physics/coarsening.h"
 
 namespace kiln::sintering {
@@ -109,10 +110,9 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
 bool Candidates::complete(const Motion& motion) const {
     const double harmless = harmless_overlap * 2.0 * body_.mean_radius() * motion.strain.cwiseAbs().maxCoeff();
     const auto touching_among = [&](const std::vector<Pair>& pairs) {
-        std::size_t count = 0;
-#pragma omp parallel for schedule(static) reduction(+ : count) if (pairs.size() >= worth_threads)
-        for (const Pair& pair : pairs) count += end_overlap(pair, motion) > harmless;
-        return count;
+        return join_rows(pairs.size(), std::size_t{0}, [&](std::size_t row) {
+            return static_cast<std::size_t>(end_overlap(pairs[row], motion) > harmless);
+        }, std::plus());
     };
     if (lists_ == body_.lists()) return touching_among(left_out_) == 0;
     return touching_among(body_.pairs()) == touching_among(chosen_);  // a new list holds the chosen as well

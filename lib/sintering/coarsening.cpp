@@ -180,10 +180,9 @@ class Exchange {
         }
         for (int shortenings = 0; shortenings < max_shortenings; ++shortenings) {
             give(part);
-            double most = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : most) if (volume_.size() >= worth_threads)
-            for (std::size_t grain = 0; grain < volume_.size(); ++grain)
-                if (volume_[grain] > counts) most = std::max(most, inflow(grain) / volume_[grain]);
+            const double most = greatest_of_rows(volume_.size(), 0.0, [&](std::size_t grain) {
+                return volume_[grain] > counts ? inflow(grain) / volume_[grain] : 0.0;
+            });
             if (most <= max_fraction) return part;
             part *= shortening * max_fraction / most;
         }

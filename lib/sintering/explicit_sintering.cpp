@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
 #include "physics/materials.h"
 #include "sintering/die.h"
 
@@ -86,16 +87,15 @@ ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<dou
     // reaches.
     const std::size_t chunks = (body_.size() + chunk - 1) / chunk;
     std::vector<BoxForce> parts(chunks);
-#pragma omp parallel for schedule(static) if (body_.size() >= worth_threads)
-    for (std::size_t part = 0; part < chunks; ++part)
+    for_chunks(chunks, [&](std::size_t part) {
         for (std::size_t row = first_row_[part * chunk]; row < first_row_[std::min(body_.size(), (part + 1) * chunk)]; ++row) {
             force_[row] = pair_force(pairs_[row], diffusion);
             const Vec3 vector = body_.vector(pairs_[row]);
             parts[part].force += force_[row].force.cwiseProduct(vector);
             parts[part].viscosity += force_[row].viscosity * vector.cwiseAbs2();
         }
-#pragma omp parallel for schedule(static) if (body_.size() >= worth_threads)
-    for (std::size_t particle = 0; particle < body_.size(); ++particle) {
+    }, worth_threads / chunk);
+    for_rows(body_.size(), [&](std::size_t particle) {
         Vec3 sum = Vec3::Zero();
         double viscosity = 0.0;
         for (const std::int32_t side : sides_.of(particle)) {
@@ -106,7 +106,7 @@ ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<dou
         }
         acceleration_[particle] = sum / mass_[particle];
         damping_[particle] = viscosity / mass_[particle];
-    }
+    });
     BoxForce total;
     for (const BoxForce& part : parts) {
         total.force += part.force;
@@ -117,13 +117,10 @@ ExplicitSintering::BoxForce ExplicitSintering::find_forces(const std::vector<dou
 
 double ExplicitSintering::stable_step(const BoxForce& box) const {
     // dv/dt = -D v is stable for steps below 2/D; D of a network is at most twice the largest sum of viscosities over mass.
-    double fastest = 0.0, speed = 0.0, push = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : fastest, speed, push) if (body_.size() >= worth_threads)
-    for (std::size_t particle = 0; particle < body_.size(); ++particle) {
-        fastest = std::max(fastest, 2.0 * damping_[particle]);
-        speed = std::max(speed, velocity_[particle].norm());
-        push = std::max(push, acceleration_[particle].norm());
-    }
+    const auto greatest = [&](const auto& value) { return greatest_of_rows(body_.size(), 0.0, value); };
+    double fastest = greatest([&](std::size_t particle) { return 2.0 * damping_[particle]; });
+    const double speed = greatest([&](std::size_t particle) { return velocity_[particle].norm(); });
+    const double push = greatest([&](std::size_t particle) { return acceleration_[particle].norm(); });
     for (int axis = 0; axis < 3; ++axis) fastest = std::max(fastest, box.viscosity[axis] / box_inertia_[axis]);
     const double length = max_approach * body_.mean_radius();
     double step = fastest > 0.0 ? stability_fraction * 2.0 / fastest : std::numeric_limits<double>::infinity();
@@ -133,8 +130,7 @@ double ExplicitSintering::stable_step(const BoxForce& box) const {
 }
 
 void ExplicitSintering::accelerate(const BoxForce& box, double step) {
-#pragma omp parallel for schedule(static) if (body_.size() >= worth_threads)
-    for (std::size_t particle = 0; particle < body_.size(); ++particle) velocity_[particle] += step * acceleration_[particle];
+    for_rows(body_.size(), [&](std::size_t particle) { velocity_[particle] += step * acceleration_[particle]; });
     const double volume = body_.box().volume();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);

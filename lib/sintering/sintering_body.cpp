@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "physics/sinter_contact.h"
 
@@ -266,10 +267,10 @@ void SinteringBody::cover(const Motion& motion, double factor) {
     const double spare = grains_change_ ? 0.5 * candidate_reach(motion) : 0.0;  // for each of a pair
     if (grains_change_) factor = std::max(factor, candidate_motion);
     std::vector<std::uint8_t> beyond(size());
-    std::size_t count = 0;
-#pragma omp parallel for schedule(static) reduction(+ : count) if (size() >= worth_threads)
-    for (std::size_t row = 0; row < size(); ++row)
-        count += beyond[row] = factor * travel(row, motion) + growth(row) + spare > margin_[row];
+    for_rows(size(), [&](std::size_t row) {
+        beyond[row] = factor * travel(row, motion) + growth(row) + spare > margin_[row];
+    });
+    const auto count = static_cast<std::size_t>(std::count(beyond.begin(), beyond.end(), 1));
     if (count == 0) return;
     const bool all = count > size() / few;
     std::vector<std::int32_t> rows;
@@ -282,10 +283,8 @@ void SinteringBody::cover(const Motion& motion, double factor) {
 }
 
 double SinteringBody::approach_bound(const Motion& motion) const {
-    double largest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : largest) if (size() >= worth_threads)
-    for (std::size_t row = 0; row < size(); ++row)
-        largest = std::max(largest, Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm());
+    const double largest = greatest_of_rows(
+        size(), 0.0, [&](std::size_t row) { return Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm(); });
     return 2.0 * largest + motion.strain.cwiseAbs().maxCoeff() * 2.0 * max_radius_;
 }
 
@@ -324,14 +323,11 @@ void SinteringBody::apply(const Motion& motion, double until, double temperature
     Box& box = state_.box;
     const Vec3 body = body_stretch(motion);
     const Vec3 stretch = Vec3::Ones() + motion.strain;
-    double least = std::numeric_limits<double>::infinity();
-#pragma omp parallel for schedule(static) reduction(min : least) if (size() >= worth_threads)
-    for (std::size_t row = 0; row < size(); ++row) {
+    for_rows(size(), [&](std::size_t row) {
         margin_[row] -= travel(row, motion);
-        least = std::min(least, margin_[row]);
         Vec3& position = state_.particles.position[row];
         position = box.origin + stretch.cwiseProduct(position - box.origin) + Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
-    }
+    });
     const Vec3 middle = box.origin + 0.5 * box.lengths, both = stretch.cwiseProduct(body);
     for (int axis = 0; axis < 3; ++axis)  // a free body's box shrinks towards its middle, a periodic one towards its origin
         if (!box.periodic[static_cast<std::size_t>(axis)]) box.origin[axis] = middle[axis] - 0.5 * body[axis] * box.lengths[axis];
@@ -340,7 +336,7 @@ void SinteringBody::apply(const Motion& motion, double until, double temperature
     state_.time = until;
     state_.temperature = temperature;
     density_ = solid_ / state_.box.volume();
-    min_margin_ = least;
+    min_margin_ = margin_.empty() ? std::numeric_limits<double>::infinity() : *std::min_element(margin_.begin(), margin_.end());
     end_contacts();
 }
 

@@ -108,12 +108,12 @@ def stages_of(commands: Iterable[Command]) -> list[list[str]]:
 class Stage:
     """A running program of a pipe, and what it said."""
 
-    def __init__(self, words: list[str], source: Any, more: Sequence[str], environment: Mapping[str, str]) -> None:
+    def __init__(self, words: list[str], source: Any, more: Sequence[str]) -> None:
         self.name = os.path.basename(words[0])
         self.steps, self.words, self.warning = 0, "", ""
         try:
             self.process = subprocess.Popen([find(words[0]), *words[1:], *more], stdin=source, stdout=subprocess.PIPE,
-                                            stderr=subprocess.PIPE, env=environment)
+                                            stderr=subprocess.PIPE)
         except OSError as error:
             raise Error(f"{words[0]}: {error.strerror}", self.name) from None
 
@@ -212,14 +212,13 @@ def run(*commands: Command,
     (with what was written) where one ends without converging. No program is left running.
     """
     stages = stages_of(commands)
-    environment = {"OMP_WAIT_POLICY": "passive", **os.environ}  # stages that run side by side must not wait busily
     listeners, running = Listeners(), []  # type: Listeners, list[Stage]
     try:
         for number, words in enumerate(stages):
             own = os.path.basename(words[0]) in PROGRAMS
             more = (["-v"] if own and progress else []) + (["--threads", str(threads)] if own and threads else [])
             source = running[-1].process.stdout if running else subprocess.DEVNULL if given is None else subprocess.PIPE
-            running.append(Stage(words, source, more, environment))
+            running.append(Stage(words, source, more))
             if number:
                 running[-2].process.stdout.close()  # type: ignore[union-attr]
             listeners.start(listeners.hear, running[-1])

@@ -114,7 +114,7 @@ END
     cp -r "$ROOT/lib" "$ROOT/tests" "$ROOT/tools" .
     fenced diff docs/add-a-law.md >change
     GIT_CEILING_DIRECTORIES="$BATS_TEST_TMPDIR" git apply change
-    compile() { g++ -std=c++20 -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror -Ilib -I. -isystem /usr/include/eigen3 "$@"; }
+    compile() { g++ -std=c++20 -pthread -Wall -Wextra -Wconversion -Wshadow -Werror -Ilib -I. -isystem /usr/include/eigen3 "$@"; }
     compile -fsyntax-only tools/common/bond_model.cpp
     compile -fsyntax-only -x c++ - <<<'#include "physics/sinter_contact.h"'
     compile -o law lib/physics/bond_law.cpp lib/physics/solid_law.cpp tests/unit/stepped_law_test.cpp tests/main.cpp

@@ -3,11 +3,11 @@
 #include "physics/bending.h"
 
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <bit>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "bending/result_document.h"
@@ -188,16 +188,16 @@ TEST_CASE("where the particles' images are does not matter") {
 }
 
 TEST_CASE("the same bytes for any number of threads, states included") {
-    const int threads = omp_get_max_threads();
+    const int before = threads();
     std::vector<std::string> documents;
     for (const int count : {1, 2}) {
-        omp_set_num_threads(count);
+        set_threads(count);
         const Result result = tested(test::make_rough_bar({20, 20, 6}));
         documents.push_back(document(result, {}, Json::array()).dump());
         for (const Vec3& position : bent_state(result).particles.position)
             for (const double x : position) documents.back() += std::to_string(std::bit_cast<std::uint64_t>(x)) + " ";
     }
-    omp_set_num_threads(threads);
+    set_threads(before);
     CHECK(documents[0] == documents[1]);
 }
 

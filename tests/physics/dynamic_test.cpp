@@ -2,10 +2,10 @@
 #include "bending/dynamic_bending.h"
 
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <cmath>
 
+#include "core/parallel.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 #include "bending/result_document.h"
@@ -115,17 +115,17 @@ TEST_CASE("friction at the cylinders stiffens the bar and takes energy, and the 
 }
 
 TEST_CASE("dynamic bending: the same bytes for any number of threads") {
-    const int threads = omp_get_max_threads();
+    const int before = threads();
     Options options = dynamic_options();
     options.max_force = 1e-6;
     options.punch_velocity = 1.0;
     std::vector<std::string> documents;
     for (const int count : {1, 2}) {
-        omp_set_num_threads(count);
+        set_threads(count);
         documents.push_back(
             document(bend_dynamic(test::make_rough_bar({26, 8, 8}), options), options, Json::array()).dump());
     }
-    omp_set_num_threads(threads);
+    set_threads(before);
     CHECK(documents[0] == documents[1]);
 }
 

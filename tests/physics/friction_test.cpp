@@ -1,11 +1,11 @@
 // friction_test.cpp: friction of contacts: one particle pressed and dragged, bent bars against beam theory, and static against
 // dynamic.
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "mechanics/tangential_contacts.h"
 #include "mechanics/explicit_contacts.h"
 #include "physics/hertz.h"
@@ -256,13 +256,13 @@ TEST_CASE("friction: the same at any scale from 1 nm to 1 m, and the same bytes 
         CHECK(peak_stiffness(scaled, options) == relative(lambda * peak_stiffness(result, options), 1e-7));
         CHECK(scaled.friction_loss == relative(lambda * lambda * lambda * result.friction_loss, 1e-5));
     }
-    const int threads = omp_get_max_threads();
+    const int before = threads();
     std::vector<std::string> documents;
     for (const int count : {1, 2}) {
-        omp_set_num_threads(count);
+        set_threads(count);
         documents.push_back(document(bent(test::make_rough_bar({20, 20, 6}), options), options, Json::array()).dump());
     }
-    omp_set_num_threads(threads);
+    set_threads(before);
     CHECK(documents[0] == documents[1]);
 }
 

@@ -1,10 +1,10 @@
 // lattice_test.cpp: elastic constants of regular lattices of bonds against closed forms.
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "mechanics/elastic_tensor.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
@@ -76,13 +76,13 @@ TEST_CASE("a disordered cell: symmetric tensor below the affine bound, the same 
 TEST_CASE("an elastic tensor: the same bytes for any number of threads") {
     const State state = test::make_rough_bar({14, 14, 14});
     const BondNetwork network = bonded_body(state, {}).network;
-    const int threads = omp_get_max_threads();
+    const int before = threads();
     std::vector<Mat6> tensors;
     for (const int count : {1, 2, 3}) {
-        omp_set_num_threads(count);
+        set_threads(count);
         tensors.push_back(elastic_tensor(network, state.box.volume(), 1e-8).stiffness);
     }
-    omp_set_num_threads(threads);
+    set_threads(before);
     CHECK(tensors[0] == tensors[1]);
     CHECK(tensors[0] == tensors[2]);
 }

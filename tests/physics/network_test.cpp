@@ -1,6 +1,5 @@
 // network_test.cpp: bond networks against beam theory and the theorems of linear elasticity; the solver's cost and repeatability.
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <type_traits>
 
 #include "bending/equilibria.h"
+#include "core/parallel.h"
 #include "mechanics/elastic_solver.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
@@ -230,17 +230,17 @@ TEST_CASE("bonds of a hundred million times each other's stiffness: the true res
 TEST_CASE("the same bytes for any number of threads") {
     const BondNetwork network = bonded_body(rough_bar({40, 8, 8}), {}).network;
     const Vector load = balanced_load(network, network.nodes() - 1, 0, Vec3(1e-6, 0.0, 1e-6));
-    const int threads = omp_get_max_threads();
-    omp_set_num_threads(1);
+    const int before = threads();
+    set_threads(1);
     const Vector one = solved(network, load, 1e-8);
     for (const int count : {2, 3}) {
-        omp_set_num_threads(count);
+        set_threads(count);
         const Vector several = solved(network, load, 1e-8);
         bool same = true;
         for (std::size_t i = 0; i < one.size(); ++i) same = same && one[i] == several[i];
         CHECK(same);
     }
-    omp_set_num_threads(threads);
+    set_threads(before);
 }
 
 TEST_CASE("what refers to parts of itself can be neither copied nor moved") {

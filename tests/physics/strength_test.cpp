@@ -3,12 +3,12 @@
 #include "bending/failure.h"
 
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/parallel.h"
 #include "physics/bending.h"
 #include "physics/hertz.h"
 #include "tests/physics/bar_files.h"
@@ -211,16 +211,16 @@ TEST_CASE("a bar softened step by step is the bar that was soft from the start")
 }
 
 TEST_CASE("failure: the same bytes for any number of threads") {
-    const int threads = omp_get_max_threads();
+    const int before = threads();
     std::vector<std::string> documents;
     Options options = brittle();
     options.until = 0.9;
     for (const int count : {1, 2}) {
-        omp_set_num_threads(count);
+        set_threads(count);
         const Result result = failed(test::make_rough_bar({26, 8, 8}), options);
         documents.push_back(document(result, options, Json::array()).dump() + Json(result.broken).dump());
     }
-    omp_set_num_threads(threads);
+    set_threads(before);
     CHECK(documents[0] == documents[1]);
 }
 

@@ -1,12 +1,12 @@
 // voxel_test.cpp: tensors of images and states against closed forms, lattices, symmetries and each other.
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <random>
 
+#include "core/parallel.h"
 #include "mechanics/elastic_tensor.h"
 #include "tests/physics/relative.h"
 #include "voxel/extrapolation.h"
@@ -140,8 +140,8 @@ std::vector<double> edges_of(const std::vector<OnGrid>& grids) {
 }
 
 struct Threads {
-    explicit Threads(int count) : before(omp_get_max_threads()) { omp_set_num_threads(count); }
-    ~Threads() { omp_set_num_threads(before); }
+    explicit Threads(int count) : before(threads()) { set_threads(count); }
+    ~Threads() { set_threads(before); }
     int before;
 };
 

@@ -1,6 +1,5 @@
 // green_test.cpp: green bodies: size distributions, overlaps, densities, and the coordination number of the paper's start.
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <numeric>
 
 #include "core/contacts.h"
+#include "core/parallel.h"
 #include "io/files.h"
 #include "packing/packing.h"
 
@@ -229,12 +229,12 @@ TEST_CASE("green: a density that cannot be reached says which can") {
 }
 
 TEST_CASE("green: the same body for any number of threads, another for another seed") {
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(1);
+    const int before = threads();
+    set_threads(1);
     const State one = packed(few(10000));
-    omp_set_num_threads(2);
+    set_threads(2);
     const State three = packed(few(10000));
-    omp_set_num_threads(before);
+    set_threads(before);
     CHECK(one.particles.position == three.particles.position);
     CHECK(packed(few(100)).particles.position != packed(few(100, 2)).particles.position);
 }

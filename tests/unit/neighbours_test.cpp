@@ -1,8 +1,8 @@
 // neighbours_test.cpp: the neighbour search against a search through every pair and image.
 #include "core/neighbours.h"
+#include "core/parallel.h"
 
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <random>
@@ -127,12 +127,12 @@ TEST_CASE("neighbours: a simple cubic cell of one particle has its three positiv
 
 TEST_CASE("neighbours: the same order for any number of threads") {
     const Sample sample = random_sample(14, 20000, {1.0, 1.0, 1.0}, 0.002, 0.05);
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(1);
+    const int before = threads();
+    set_threads(1);
     const std::vector<Pair> one = found(sample);
-    omp_set_num_threads(3);
+    set_threads(3);
     const std::vector<Pair> three = found(sample);
-    omp_set_num_threads(before);
+    set_threads(before);
     CHECK(one.size() > 10000);
     CHECK(one == three);
 }

@@ -1,6 +1,5 @@
 // voxel_test.cpp: transforms, images, connected components, rasters and extrapolations against what is known in closed form.
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <cmath>
 #include <complex>
@@ -8,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/parallel.h"
 #include "linalg/fourier_inverse.h"
 #include "linalg/line_transform.h"
 #include "tests/physics/relative.h"
@@ -86,8 +86,8 @@ const std::vector<std::uint8_t> one_phase{1};
 
 /// Number of threads while this lives.
 struct Threads {
-    explicit Threads(int count) : before(omp_get_max_threads()) { omp_set_num_threads(count); }
-    ~Threads() { omp_set_num_threads(before); }
+    explicit Threads(int count) : before(threads()) { set_threads(count); }
+    ~Threads() { set_threads(before); }
     int before;
 };
 

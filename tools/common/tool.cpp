@@ -2,17 +2,17 @@
 #include "tools/common/tool.h"
 
 #include <CLI/CLI.hpp>
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <set>
 
+#include "core/parallel.h"
 #include "io/files.h"
 #include "tools/common/help_format.h"
 #include "tools/common/value_options.h"
@@ -39,6 +39,8 @@ void watch_signals() {
 /// The group of options that every program has; --help prints it last.
 constexpr const char* common_group = "Common options";
 
+constexpr int max_threads = 1024;
+
 /// --help and --version: everything is said already.
 struct Finished {};
 
@@ -46,6 +48,12 @@ struct Finished {};
 constexpr std::array without_bearing{"--help",    "--version", "--config", "--output",     "--text",
                                      "--quiet",   "--verbose", "--threads", "--history",   "--states",
                                      "--resume",  "files",     "--checkpoint", "--checkpoint-every", "--plot"};
+
+/// OMP_NUM_THREADS, which schedulers of clusters set; 0 where it gives no number.
+int threads_of_environment() {
+    const char* const text = std::getenv("OMP_NUM_THREADS");
+    return text == nullptr ? 0 : std::clamp(std::atoi(text), 0, max_threads);
+}
 
 /// The text without line ends and what else a terminal would act on; names in it come from files.
 std::string one_line(std::string text) {
@@ -76,8 +84,8 @@ void Common::add_to(CLI::App& app, bool reads, bool writes_states) {
     app.add_flag("-q,--quiet", quiet, "No progress and no warnings on standard error")->group(common_group);
     app.add_flag("-v,--verbose", verbose, "Say more on standard error; a JSON line a step if that is not a terminal")
         ->group(common_group);
-    add_number(app, "--threads", threads, {1, 1024}, "Number of threads; the result does not depend on it")
-        ->default_str("all cores")
+    add_number(app, "--threads", threads, {1, max_threads}, "Number of threads; the result does not depend on it")
+        ->default_str("OMP_NUM_THREADS, or all cores")
         ->group(common_group);
     app.set_config("--config", "", "Read options from a TOML file, such as: temperature = \"1200C\"")
         ->type_name("FILE")
@@ -139,7 +147,7 @@ void parse(CLI::App& app, int argc, char** argv, const Common& common) {
     } catch (const CLI::FileError&) {  // the only file that CLI11 reads itself
         throw Error("--config: " + app.get_config_ptr()->as<std::string>() + " cannot be read");
     }
-    if (common.threads > 0) omp_set_num_threads(common.threads);
+    if (const int count = common.threads > 0 ? common.threads : threads_of_environment(); count > 0) set_threads(count);
 }
 
 Json history_entry(const std::string& tool, const CLI::App& app, const Json& summary) {
