@@ -48,7 +48,7 @@ Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const O
                        const StopRequest& stop)
     : network_(specimen.body.network),
       tooling_(find_contacts(specimen, fixture)),
-      solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation, stop),
+      solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation, stop, options.linear_solver),
       problem_(specimen.body.network, solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction,
                seating_share * expected_force(specimen, fixture, options)),
       gauge_(specimen, fixture),

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mechanics/bond_network.h"
+#include "mechanics/linear_solver.h"
 
 namespace kiln::bending {
 
@@ -24,6 +25,7 @@ struct Options {
     int points = 6;  // of a branch
     double tolerance = 1e-6;
     mechanics::BondModel model;
+    mechanics::LinearSolverMaker linear_solver;  // empty: the library's own
     Method method = Method::equilibria;
     double punch_velocity = 0.0;  // m/s
     double damping = 0.7;

@@ -30,7 +30,7 @@ linalg::NodeGeometry geometry_of(const BondNetwork& network) {
 
 }  // namespace
 
-ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop)
+ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop, const LinearSolverMaker& other)
     : stop_(std::move(stop)), matrix_(stiffness_matrix(network)), grounded_(middle_node(network)) {
     const auto row = static_cast<std::int32_t>(grounded_);
     for (std::int64_t k = matrix_.first(row); k < matrix_.last(row); ++k) {
@@ -41,10 +41,18 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequ
         if (ground == Ground::displacement_and_rotation) ground_.tail<3>().setConstant(mean);
         block.diagonal() += ground_;
     }
-    preconditioner_ = std::make_unique<linalg::Multigrid>(matrix_, geometry_of(network), max_eigenvalue_of_bonds);
+    if (other)
+        other_ = other(network, {grounded_, ground_}, stop_);
+    else
+        preconditioner_ = std::make_unique<linalg::Multigrid>(matrix_, geometry_of(network), max_eigenvalue_of_bonds);
+}
+
+Residual ElasticSolver::residual() const {
+    return [this](const Vector& x, const Vector& b, Vector& r) { linalg::residual<1>(matrix_, x, b, r); };
 }
 
 linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
+    if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
     const auto precondition = [this](const Vector& r, Vector& z) {
         throw_if_stopped(stop_);
         preconditioner_->apply<1>(r, z);
@@ -54,6 +62,7 @@ linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double t
 
 std::array<linalg::SolveReport, 6> ElasticSolver::solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
                                                         int max_iterations) {
+    if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
     const auto precondition = [this](const linalg::Batch<6>& r, linalg::Batch<6>& z) {
         throw_if_stopped(stop_);
         preconditioner_->apply<6>(r, z);
@@ -62,6 +71,7 @@ std::array<linalg::SolveReport, 6> ElasticSolver::solve(const linalg::Batch<6>& 
 }
 
 void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double share) {
+    if (other_) other_->soften(network, bond, share);
     const auto [i, j] = network.pair[bond];
     const BondBlocks blocks = bond_blocks(network, bond);
     const auto block_at = [&](std::int32_t row, std::int32_t column) -> Mat6& {

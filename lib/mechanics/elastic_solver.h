@@ -6,6 +6,7 @@
 
 #include "core/stop.h"
 #include "mechanics/bond_network.h"
+#include "mechanics/linear_solver.h"
 #include "linalg/block_solver.h"
 #include "linalg/multigrid.h"
 
@@ -20,8 +21,9 @@ enum class Ground {
 
 class ElasticSolver {
    public:
-    /// stop: asked in each iteration of a solve, which throws Interrupted.
-    ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop = {});
+    /// stop: asked in each iteration of a solve, which throws Interrupted. other: solves in the place of conjugate gradients with
+    /// the library's own multigrid.
+    ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop = {}, const LinearSolverMaker& other = {});
     ElasticSolver(const ElasticSolver&) = delete;  // as large as the network
     ElasticSolver& operator=(const ElasticSolver&) = delete;
 
@@ -39,14 +41,18 @@ class ElasticSolver {
     /// for the softer body.
     void soften(const BondNetwork& network, std::size_t bond, double share);
 
+    /// There is none where another solver is at work.
     linalg::Multigrid& preconditioner() { return *preconditioner_; }
 
    private:
+    Residual residual() const;
+
     StopRequest stop_;
     BlockMatrix matrix_;  // with the ground springs
     std::size_t grounded_ = 0;
     Vec6 ground_ = Vec6::Zero();
     std::unique_ptr<linalg::Multigrid> preconditioner_;
+    std::unique_ptr<LinearSolver> other_;
 };
 
 }  // namespace kiln::mechanics

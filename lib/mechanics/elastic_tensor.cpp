@@ -59,8 +59,9 @@ Compliance compliance_of(const Mat6& stiffness) {
 
 }  // namespace
 
-ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop) {
-    ElasticSolver solver(network, Ground::displacement, stop);
+ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop,
+                             const LinearSolverMaker& other) {
+    ElasticSolver solver(network, Ground::displacement, stop, other);
     ElasticTensor tensor;
     Vector field(network.nodes(), Vec6::Zero());
     linalg::Batch<6> load(network.nodes()), displacement;

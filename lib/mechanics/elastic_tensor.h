@@ -3,6 +3,7 @@
 
 #include "core/stop.h"
 #include "mechanics/bond_network.h"
+#include "mechanics/linear_solver.h"
 
 namespace kiln::mechanics {
 
@@ -16,8 +17,9 @@ struct ElasticTensor {
 };
 
 /// Six uniform strains of a periodic network in a cell of the given volume, m3, solved at once.
-/// Throws Interrupted.
-ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop = {});
+/// other: see ElasticSolver. Throws Interrupted.
+ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop = {},
+                             const LinearSolverMaker& other = {});
 
 /// What a tensor means for a body without texture.
 struct IsotropicAverage {
