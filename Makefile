@@ -16,6 +16,7 @@ ifeq ($(origin CXX),default)
 CXX      := g++
 endif
 NATIVE   ?= 0
+PETSC    ?= 0
 
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow
 OPTIMISE := -O3 -DNDEBUG
@@ -27,12 +28,13 @@ CXXFLAGS  = -std=c++20 -g1 $(OPTIMISE) $(WARNINGS) -pthread -fopenmp-simd -fno-m
 LDFLAGS  := -pthread $(EXTRA)
 
 TOOLS        := sinter bondify bend analyze
-LIB_SOURCES  := $(wildcard lib/*/*.cpp)
+LIB_SOURCES  := $(filter-out lib/petsc/%,$(wildcard lib/*/*.cpp))
 LIB_OBJECTS  := $(LIB_SOURCES:%.cpp=$(BUILD)/%.o)
 TOOL_OBJECTS := $(patsubst %,$(BUILD)/tools/%.o,$(TOOLS) common)
 BENCH_NAMES  := $(basename $(notdir $(wildcard bench/*.cpp)))
 BENCH_SCRIPTS := $(basename $(notdir $(wildcard bench/*.py)))
-PROGRAMS     := $(TOOLS:%=$(BUILD)/bin/%)
+BIN          := $(BUILD)/bin
+PROGRAMS     := $(TOOLS:%=$(BIN)/%)
 
 # Piece "unit-2" of 4 is the second quarter of the files of tests/unit.
 UNIT_PIECES    := 4
@@ -46,7 +48,7 @@ UNIT_OBJECTS   := $(BUILD)/tests/main.o \
 .PHONY: all demo test unit-test cli-test bench man clean help packages
 .SECONDARY:
 
-all: $(PROGRAMS)                ## build the four programs into build/bin
+all: $(PROGRAMS)                ## build the four programs into build/bin; PETSC=1: with --solver petsc, and optional-packages
 
 help:                           ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/:/' | column -t -s :
@@ -106,10 +108,31 @@ $(foreach n,$(shell seq $(UNIT_PIECES)),\
 $(foreach n,$(shell seq $(PHYSICS_PIECES)),\
     $(eval $(call piece_rule,tests/physics-$(n),$(call files_of_piece,physics,$(PHYSICS_PIECES),$(n)))))
 
+# Who links PETSc and MPI: with PETSC=1 the programs that solve bond networks. PETSc is found by pkg-config, MPI by its compiler.
+RANKS      := $(BUILD)/tools/ranks/alone.o
+SOLVING    := bend analyze
+ifeq ($(PETSC),1)
+PETSC_RANKS := $(BUILD)/tools/ranks/petsc.o $(patsubst %.cpp,$(BUILD)/%.o,$(wildcard lib/petsc/*.cpp))
+MPICXX     ?= mpicxx
+WITH_MPI    = OMPI_CXX='$(CXX)' MPICH_CXX='$(CXX)' $(MPICXX)
+$(PETSC_RANKS): | $(BUILD)/petsc-present
+$(PETSC_RANKS): private CXXFLAGS += $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I PETSc)) -DOMPI_SKIP_MPICXX
+$(PETSC_RANKS) $(SOLVING:%=$(BIN)/%): private override CXX := $(WITH_MPI)
+$(SOLVING:%=$(BIN)/%): private RANKS := $(PETSC_RANKS)
+$(SOLVING:%=$(BIN)/%): private LDFLAGS += $(shell pkg-config --libs PETSc)
+$(SOLVING:%=$(BIN)/%): $(PETSC_RANKS)
+endif
+
+$(BIN).petsc: FORCE
+	@mkdir -p $(@D)
+	@cmp -s $@ <(echo '$(PETSC)') || echo '$(PETSC)' > $@
+
+OBJECTS_OF_ALL := $(BUILD)/tools/common.o $(BUILD)/libkiln.a
+
 define tool_rule
-$(BUILD)/bin/$(1): $(BUILD)/tools/$(1).o $(BUILD)/tools/common.o $(BUILD)/libkiln.a
+$(BIN)/$(1): $(BUILD)/tools/$(1).o $(RANKS) $(OBJECTS_OF_ALL) $(BIN).petsc
 	@mkdir -p $$(@D)
-	$(CXX) $$^ $(LDFLAGS) -o $$@
+	$$(CXX) $$< $$(RANKS) $(OBJECTS_OF_ALL) $$(LDFLAGS) -o $$@
 endef
 $(foreach tool,$(TOOLS),$(eval $(call tool_rule,$(tool))))
 

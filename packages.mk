@@ -7,6 +7,8 @@ PICTURE_PACKAGES := python3 python3-numpy python3-matplotlib python3-meshio libj
 NEIGHBOUR_PACKAGES := python3-vtk9 chromium fonts-dejavu-core snakemake
 # What single tests need and are skipped without: `make optional-packages` installs them.
 OPTIONAL_PACKAGES := mypy python3-pandas slurmctld slurmd slurm-client munge
+# For `make PETSC=1`, which installs them: the linear systems of bonds on several machines.
+PETSC_PACKAGES := petsc-dev libopenmpi-dev openmpi-bin pkgconf
 # Further checks, by hand only: `make fuzz`, `make tsan`, `make tidy`.
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
 TIDY_PACKAGES := clang-tidy-14
@@ -34,6 +36,16 @@ $(BUILD)/packages-present: packages.mk
 	    echo "  $(PACKAGES)" >&2; exit 1; \
 	fi
 	@$(call install_missing,$(PACKAGES))
+	@touch $@
+
+# A PETSc that pkg-config finds is taken as it is: that of a cluster's modules, by PKG_CONFIG_PATH.
+$(BUILD)/petsc-present: packages.mk
+	@mkdir -p $(@D)
+	@pkg-config --exists PETSc 2>/dev/null && command -v $(MPICXX) >/dev/null || { \
+	    if ! command -v apt-get >/dev/null; then \
+	        echo "PETSC=1 needs PETSc, found by pkg-config, and MPI's compiler $(MPICXX)" >&2; exit 1; \
+	    fi; \
+	    $(call install_missing,$(PETSC_PACKAGES)); }
 	@touch $@
 
 .PHONY: optional-packages

@@ -10,6 +10,7 @@ GROUND = ["lib/core"]
 FIRST = GROUND + ["lib/physics", "lib/linalg", "lib/bonding"]
 SECOND = FIRST + ["lib/sintering", "lib/mechanics", "lib/voxel", "lib/analysis", "lib/io"]
 LIBRARY = SECOND + ["lib/bending", "lib/packing"]
+PETSC = ["lib/petsc", "tools/ranks"]  # compiled with PETSC=1 only, so nobody else may know PETSc or MPI
 BELOW = {
     "lib/core": [],
     "lib/physics": GROUND,
@@ -20,9 +21,11 @@ BELOW = {
     "lib/voxel": FIRST,
     "lib/analysis": FIRST,
     "lib/io": FIRST,
+    "lib/petsc": FIRST + ["lib/mechanics"],
     "lib/bending": SECOND,
     "lib/packing": SECOND,
     "tools/common": LIBRARY,
+    "tools/ranks": LIBRARY + ["lib/petsc", "tools/common"],
     "tools/sinter": LIBRARY + ["tools/common"],
     "tools/bondify": LIBRARY + ["tools/common"],
     "tools/bend": LIBRARY + ["tools/common"],
@@ -34,6 +37,7 @@ BELOW = {
 TEXT = (".cpp", ".h", ".py", ".js", ".html", ".bats", ".bash", ".sh", ".mk", ".md", ".5", "Makefile", "Snakefile")
 MACHINE_PATH = re.compile(r"(?<![\w.$])/(home|root|work|mnt|srv)/")
 BARE_APPROX = re.compile(r"\bApprox\(")  # of doctest: it accepts any two numbers far below one
+OF_PETSC = re.compile(r"#include <(petsc|mpi)")
 INCLUDE = re.compile(r'#include "([^"]+)"')
 
 
@@ -66,6 +70,8 @@ def faults_of(path):
             yield f"{path}:{number}: compares by doctest's Approx; relative() of tests/physics/relative.h holds for any size"
         include = INCLUDE.match(line)
         part = part_of(path)
+        if OF_PETSC.match(line) and part not in PETSC:
+            yield f"{path}:{number}: only {' and '.join(PETSC)} may include {line.split()[1]}"
         if include and part:
             used = included_part(path, include[1])
             if used is None or used != part and used not in BELOW[part]:

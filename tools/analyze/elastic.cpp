@@ -16,6 +16,7 @@
 #include "tools/common/bond_model.h"
 #include "tools/common/material_option.h"
 #include "tools/common/quantity_options.h"
+#include "tools/common/solver_option.h"
 #include "tools/common/value_options.h"
 
 namespace kiln::analyze {
@@ -118,14 +119,14 @@ mechanics::Mat6 stiffness_of(const State& state, const mechanics::Mat6& springs,
     return mechanics::with_poisson_ratio(springs, mechanics::isotropic_average(springs).poisson_ratio + shift);
 }
 
-Json of_network(const State& state, const mechanics::BondModel& model, double tolerance) {
+Json of_network(const State& state, const mechanics::BondModel& model, double tolerance, const cli::SolverOption& solver) {
     const auto& periodic = state.box.periodic;
     if (!std::all_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; }))
         throw Error(
             "the box is not periodic along all axes, so the state has no elastic tensor; bend tests bodies with free faces");
     const mechanics::BondedBody body = mechanics::bonded_body(state, model);
     const mechanics::ElasticTensor tensor =
-        mechanics::elastic_tensor(body.network, state.box.volume(), tolerance, cli::stop_requested);
+        mechanics::elastic_tensor(body.network, state.box.volume(), tolerance, solver.stop(), solver.solver());
     Json result{{"format", "dem-elastic"},
                 {"version", io::format_version},
                 {"model", "network"},
@@ -190,6 +191,8 @@ int elastic(int argc, char** argv) {
     add_table(app, table);
     options.add_to(app, "springs between the particles, by --bond-law", "Unbalanced force over load");
     cli::add_bond_model(app, model);
+    cli::SolverOption solver;
+    solver.add_to(app);
     cli::add_quantity(app, "--young-modulus", young, io::Dimension::pressure, "With --image: Young's modulus of the solid");
     cli::add_number(app, "--poisson-ratio", poisson, {-0.999, 0.499}, "With --image: Poisson's ratio of the solid")
         ->default_str("");
@@ -197,12 +200,13 @@ int elastic(int argc, char** argv) {
     material.add_to(app);
     common.add_to(app, true, false);
     cli::parse(app, argc, argv, common);
-    options.check(app, {"--bond-law", "--bond-shear"}, {"--young-modulus", "--poisson-ratio"}, common);
+    options.check(app, {"--bond-law", "--bond-shear", "--solver"}, {"--young-modulus", "--poisson-ratio"}, common);
     if (!options.image.empty() && app.count("--material") > 0)
         throw CLI::ValidationError("--material",
                                    "has no meaning with --image, whose solid has --young-modulus and --poisson-ratio");
     if (!options.image.empty() && !(young > 0.0)) throw CLI::ValidationError("--young-modulus", "is not greater than 0");
 
+    solver.begin(common);
     Report report(common, table, options.model == Model::voxel ? elastic_voxel_columns : elastic_network_columns);
     bool converged = true;
     const auto add = [&](Json result, const Json& name) {
@@ -223,7 +227,7 @@ int elastic(int argc, char** argv) {
         material.needed_for({physics::Use::elasticity});
         cli::for_each_state(input, material, [&](const State& state, const std::string& place) {
             if (options.model == Model::network) {
-                Json result = of_network(state, model, options.tolerance);
+                Json result = of_network(state, model, options.tolerance, solver);
                 for (const Json& warning : result["warnings"])
                     if (!common.quiet) cli::warn("analyze elastic", place + ": " + warning.get<std::string>());
                 add(std::move(result), io::material_names(state));

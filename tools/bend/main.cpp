@@ -35,6 +35,8 @@ int run(int argc, char** argv) {
     if (common.text && options.states.empty())
         throw CLI::ValidationError("--text", "needs --states; what is written without it is text always");
     cli::check_outputs({common.output, options.states});
+    options.solver.begin(common, {&options.states});
+    options.linear_solver = options.solver.solver();
 
     io::Input input(common.files, cli::stop_requested);
     io::Output output(common.output, true);
@@ -54,7 +56,7 @@ int run(int argc, char** argv) {
     material.needed_for(std::move(uses));
     cli::for_each_state(input, material, [&](State state, const std::string& place) {
         Json history = io::history_of(state);
-        const Watch watch{cli::stop_requested, [&](double done) { progress.show(done, place); }};
+        const Watch watch{options.solver.stop(), [&](double done) { progress.show(done, place); }};
         const bending::Result result = test(std::move(state), options, watch);
         progress.clear();
         if (!common.quiet) warn(place, result);

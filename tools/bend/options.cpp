@@ -90,6 +90,7 @@ void Options::add_to(CLI::App& app) {
     cli::add_bond_model(app, model);
     cli::add_number(app, "--tolerance", tolerance, {1e-14, 1e-2},
                     "Unbalanced force over contact force at which an equilibrium is reached; static");
+    solver.add_to(app);
     app.add_option("--states", states, "Also write the bar bent by the maximum force, with the forces in its bonds, to this file")
         ->type_name("FILE");
     add_dynamic(app);
@@ -113,6 +114,9 @@ void Options::check(const CLI::App& app) const {
     }
     if (app.count("--tolerance") > 0 && method == Method::motion) {
         throw CLI::ValidationError("--tolerance", "has no meaning with --method dynamic");
+    }
+    if (app.count("--solver") > 0 && method == Method::motion) {
+        throw CLI::ValidationError("--solver", "has no meaning with --method dynamic, which solves no systems");
     }
     if (app.count("--until") > 0 && !to_failure()) {
         throw CLI::ValidationError("--until", "needs --tensile-strength, --shear-strength or --calibrate-to");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bending/options.h"
+#include "tools/common/solver_option.h"
 
 namespace CLI {
 class App;
@@ -14,6 +15,7 @@ namespace kiln::bend {
 /// The options of the test, and what only the program needs.
 struct Options : bending::Options {
     std::string states;  // file of the deformed states; empty for none
+    cli::SolverOption solver;
 
     void add_to(CLI::App& app);
 

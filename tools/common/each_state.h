@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "io/files.h"
@@ -19,6 +20,10 @@ auto at_place(const std::string& place, const Work& work) {
         throw Error(place + ": " + error.what());
     }
 }
+
+/// The next document of the input; nothing at the end. Of several processes the first one reads it for all: what it cannot read
+/// ends the others as a stop does.
+std::optional<io::Document> next_document(io::Input& input);
 
 /// Calls work(document) for each document of the input.
 void for_each_document(io::Input& input, const std::function<void(io::Document)>& work);

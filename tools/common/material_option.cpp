@@ -72,7 +72,7 @@ void MaterialOption::warn_once(const std::string& sentence) const {
 
 void for_each_state(io::Input& input, const MaterialOption& material,
                     const std::function<bool(State, const std::string& place)>& work) {
-    while (auto document = input.next()) {
+    while (auto document = next_document(input)) {
         const std::string place = document->place;
         State state = material.state_from(std::move(*document));
         const auto with_advice = [&] {

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "io/files.h"
 #include "tools/common/help_format.h"
+#include "tools/common/ranks.h"
 #include "tools/common/value_options.h"
 
 namespace kiln::cli {
@@ -65,6 +66,46 @@ std::string one_line(std::string text) {
 /// Status of a run that ended in a signal, as a shell counts it; `usual` of one that did not.
 int status_after_signal(int usual) { return signal_seen == 0 ? usual : 128 + signal_seen; }
 
+/// How a run ended, and what is still to be said of it.
+struct Ending {
+    int status;
+    std::string sentence;
+    bool failed = true;
+};
+
+Ending ending_of(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body) {
+    const std::string see_help = "; see " + tool + " --help";
+    try {
+        const int status = body(argc, argv);
+        return {status == done || status == interrupted ? status_after_signal(status) : status, "", false};
+    } catch (const Finished&) {
+        if (std::cout.flush()) return {done, ""};
+        if (errno == EPIPE) return {closed_pipe, ""};
+        return {failed, "standard output cannot be written"};
+    } catch (const CLI::ParseError& error) {
+        return {wrong_usage, error.what() + see_help};
+    } catch (const TextError& error) {
+        return {wrong_usage, error.what() + see_help};
+    } catch (const io::ClosedPipe&) {
+        return {closed_pipe, ""};
+    } catch (const Interrupted&) {
+        return {status_after_signal(interrupted), ""};
+    } catch (const std::bad_alloc&) {
+        return {failed, "there is not enough memory"};
+    } catch (const std::exception& error) {
+        return {failed, error.what()};
+    }
+}
+
+/// Several processes share work only where that was chosen.
+void refuse_idle_processes(const CLI::App& app) {
+    const CLI::Option* solver = app.get_option_no_throw("--solver");
+    if (ranks::launched().count == 1 || (solver && solver->count() > 0 && solver->as<std::string>() == "petsc")) return;
+    throw CLI::ValidationError(std::to_string(ranks::launched().count) +
+                               " processes were started, and each would do the same work and write the same file; only bend and "
+                               "analyze elastic divide it among them, with --solver petsc");
+}
+
 }  // namespace
 
 void add_help(CLI::App& app) {
@@ -97,31 +138,14 @@ void Common::add_to(CLI::App& app, bool reads, bool writes_states) {
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body) {
     watch_signals();
     io::keep_freed_memory();
-    const auto say = [&](const std::string& sentence) { std::cerr << tool << ": " << one_line(sentence) << "\n"; };
-    try {
-        const int status = body(argc, argv);
-        return status == done || status == interrupted ? status_after_signal(status) : status;
-    } catch (const Finished&) {
-        if (std::cout.flush()) return done;
-        if (errno == EPIPE) return closed_pipe;
-        say("standard output cannot be written");
-        return failed;
-    } catch (const CLI::ParseError& error) {
-        say(std::string(error.what()) + "; see " + tool + " --help");
-        return wrong_usage;
-    } catch (const TextError& error) {
-        say(std::string(error.what()) + "; see " + tool + " --help");
-        return wrong_usage;
-    } catch (const io::ClosedPipe&) {
-        return closed_pipe;
-    } catch (const Interrupted&) {
-        return status_after_signal(interrupted);
-    } catch (const std::bad_alloc&) {
-        say("there is not enough memory");
-    } catch (const std::exception& error) {
-        say(error.what());
+    const Ending ending = ending_of(tool, argc, argv, body);
+    const bool together = !ending.failed || ranks::all_failed();
+    if (!ending.sentence.empty() && (ranks::rank() == 0 || !together)) {
+        const std::string which = ranks::rank() > 0 ? " (process " + std::to_string(ranks::rank() + 1) + ")" : "";
+        std::cerr << tool << which << ": " << one_line(ending.sentence) << "\n";
     }
-    return failed;
+    if (!together) ranks::abort(ending.status);
+    return ranks::end(ending.status);
 }
 
 void check_outputs(const std::vector<std::string>& names) {
@@ -136,17 +160,21 @@ void check_outputs(const std::vector<std::string>& names) {
 }
 
 void parse(CLI::App& app, int argc, char** argv, const Common& common) {
+    if (ranks::launched().count > 1) ranks::begin();
+    const auto finish = [](const std::string& text) {
+        if (ranks::rank() == 0) std::cout << text;
+        throw Finished();
+    };
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        std::cout << app.help();
-        throw Finished();
+        finish(app.help());
     } catch (const CLI::CallForVersion&) {
-        std::cout << app.get_name() << " (Kiln) " << version << "\n";
-        throw Finished();
+        finish(app.get_name() + " (Kiln) " + version + "\n");
     } catch (const CLI::FileError&) {  // the only file that CLI11 reads itself
         throw Error("--config: " + app.get_config_ptr()->as<std::string>() + " cannot be read");
     }
+    refuse_idle_processes(app);
     if (const int count = common.threads > 0 ? common.threads : threads_of_environment(); count > 0) set_threads(count);
 }
 
