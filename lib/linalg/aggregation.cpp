@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace kiln::linalg {
 
 namespace {
@@ -11,40 +13,63 @@ std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-Aggregates find_aggregates(const BlockMatrix& matrix) {
-    Aggregates aggregates;
-    aggregates.of.assign(at(matrix.rows()), -1);
-    const auto neighbours = [&](std::int32_t node) {
-        return std::span(matrix.column).subspan(at(matrix.first(node)), at(matrix.last(node) - matrix.first(node)));
-    };
-    const auto begin_at = [&](std::int32_t node) {
-        const auto aggregate = static_cast<std::int32_t>(aggregates.root.size());
-        aggregates.root.push_back(node);
-        aggregates.of[at(node)] = aggregate;
-        for (const std::int32_t neighbour : neighbours(node)) {
-            if (aggregates.of[at(neighbour)] < 0) aggregates.of[at(neighbour)] = aggregate;
+Couplings couplings_of(const BlockMatrix& matrix) {
+    return group_by<Coupling>(at(matrix.rows()), [&](const auto& visit) {
+        for (std::int32_t row = 0; row < matrix.rows(); ++row)
+            for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k)
+                if (matrix.column[at(k)] != row)
+                    visit(at(row), Coupling{matrix.column[at(k)], static_cast<float>(matrix.block[at(k)].norm())});
+    });
+}
+
+Couplings couplings_of(const Springs<double>& matrix) {
+    return group_by<Coupling>(matrix.nodes(), [&](const auto& visit) {
+        for (const Spring<double>& spring : matrix.springs()) {
+            if (spring.first == spring.second) continue;
+            const Eigen::Map<const Vec3> arm(spring.arm);
+            const auto strength = static_cast<float>(spring.shear + spring.axial * arm.squaredNorm());
+            visit(at(spring.first), Coupling{spring.second, strength});
+            visit(at(spring.second), Coupling{spring.first, strength});
         }
+    });
+}
+
+Aggregates find_aggregates(const Couplings& couplings, int rings) {
+    Aggregates aggregates;
+    const auto nodes = static_cast<std::int32_t>(couplings.begin.size() - 1);
+    aggregates.of.assign(at(nodes), -1);
+    const auto begin_at = [&](std::int32_t root) {
+        const auto aggregate = static_cast<std::int32_t>(aggregates.root.size());
+        const auto take_free_neighbours = [&](std::int32_t node) {
+            for (const Coupling& neighbour : couplings.of(at(node)))
+                if (aggregates.of[at(neighbour.node)] < 0) aggregates.of[at(neighbour.node)] = aggregate;
+        };
+        aggregates.root.push_back(root);
+        aggregates.of[at(root)] = aggregate;
+        take_free_neighbours(root);
+        if (rings == 1) return;
+        for (const Coupling& neighbour : couplings.of(at(root)))
+            if (aggregates.of[at(neighbour.node)] == aggregate) take_free_neighbours(neighbour.node);
     };
     // Nodes none of whose neighbours is taken begin an aggregate.
-    for (std::int32_t node = 0; node < matrix.rows(); ++node) {
-        bool free = true;
-        for (const std::int32_t neighbour : neighbours(node)) free = free && aggregates.of[at(neighbour)] < 0;
+    for (std::int32_t node = 0; node < nodes; ++node) {
+        bool free = aggregates.of[at(node)] < 0;
+        for (const Coupling& neighbour : couplings.of(at(node))) free = free && aggregates.of[at(neighbour.node)] < 0;
         if (free) begin_at(node);
     }
     // Of the others, each joins the neighbouring aggregate to which it is coupled most.
     const std::vector<std::int32_t> first_pass = aggregates.of;
-    for (std::int32_t node = 0; node < matrix.rows(); ++node) {
-        double strongest = 0.0;
+    for (std::int32_t node = 0; node < nodes; ++node) {
+        float strongest = 0.0f;
         if (first_pass[at(node)] >= 0) continue;
-        for (std::int64_t k = matrix.first(node); k < matrix.last(node); ++k) {
-            const std::int32_t aggregate = first_pass[at(matrix.column[at(k)])];
-            const double strength = matrix.block[at(k)].squaredNorm();
-            if (aggregate < 0 || strength <= strongest) continue;
-            strongest = strength;
+        for (const Coupling& neighbour : couplings.of(at(node))) {
+            const std::int32_t aggregate = first_pass[at(neighbour.node)];
+            if (aggregate < 0 || neighbour.strength <= strongest) continue;
+            strongest = neighbour.strength;
             aggregates.of[at(node)] = aggregate;
         }
     }
-    for (std::int32_t node = 0; node < matrix.rows(); ++node) {
+    for (std::int32_t node = 0; node < nodes; ++node) {
         if (aggregates.of[at(node)] < 0) begin_at(node);
     }
     return aggregates;
@@ -57,14 +82,21 @@ Mat6 rigid_motion(const Vec3& arm) {
     return block;
 }
 
+std::vector<Vec3> arms_of(const Aggregates& aggregates, const NodeGeometry& geometry) {
+    std::vector<Vec3> arms(aggregates.of.size());
+    for_rows(arms.size(), [&](std::size_t node) {
+        arms[node] = geometry.between(aggregates.root[at(aggregates.of[node])], static_cast<std::int32_t>(node));
+    });
+    return arms;
+}
+
 BlockMatrix rigid_prolongation(const Aggregates& aggregates, const NodeGeometry& geometry) {
     BlockMatrix prolongation;
     prolongation.columns = static_cast<std::int32_t>(aggregates.root.size());
-    for (std::size_t node = 0; node < aggregates.of.size(); ++node) {
-        const std::int32_t aggregate = aggregates.of[node];
-        prolongation.column.push_back(aggregate);
-        prolongation.block.push_back(
-            rigid_motion(geometry.between(aggregates.root[at(aggregate)], static_cast<std::int32_t>(node))));
+    for (const Vec3& arm : arms_of(aggregates, geometry)) {
+        const auto node = prolongation.column.size();
+        prolongation.column.push_back(aggregates.of[node]);
+        prolongation.block.push_back(rigid_motion(arm));
         prolongation.start.push_back(static_cast<std::int64_t>(node) + 1);
     }
     return prolongation;

@@ -5,6 +5,7 @@
 
 #include "linalg/block_matrix.h"
 #include "linalg/node_geometry.h"
+#include "linalg/springs.h"
 
 namespace kiln::linalg {
 
@@ -14,11 +15,26 @@ struct Aggregates {
     std::vector<std::int32_t> root;  // aggregate -> node
 };
 
-/// Groups of a node and its neighbours, in the order of the nodes.
-Aggregates find_aggregates(const BlockMatrix& matrix);
+/// How strongly a node is coupled to another one.
+struct Coupling {
+    std::int32_t node;
+    float strength;
+};
+
+/// Of each node, its neighbours.
+using Couplings = Grouping<Coupling>;
+
+Couplings couplings_of(const BlockMatrix& matrix);
+Couplings couplings_of(const Springs<double>& matrix);
+
+/// Groups of a node and its neighbours, in the order of the nodes; rings: 1, or 2 where neighbours of neighbours belong to it.
+Aggregates find_aggregates(const Couplings& couplings, int rings);
 
 /// Block of a rigid motion: displacement and rotation at `arm` from a point that moves and turns by the six values.
 Mat6 rigid_motion(const Vec3& arm);
+
+/// From each node's root to the node.
+std::vector<Vec3> arms_of(const Aggregates& aggregates, const NodeGeometry& geometry);
 
 /// Prolongation that moves every aggregate as a rigid body, about its root.
 BlockMatrix rigid_prolongation(const Aggregates& aggregates, const NodeGeometry& geometry);

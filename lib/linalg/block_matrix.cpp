@@ -5,79 +5,13 @@
 #include <cmath>
 
 #include "linalg/block_row.h"
+#include "linalg/sparse_row.h"
 
 namespace kiln::linalg {
 
 namespace {
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
-
-constexpr std::int32_t rows_in_chunk = 1024;
-
-/// Rows of a product one at a time. `terms(row, visit)` calls visit(left block, row of b, transposed) for each term of the row.
-template <typename Terms>
-BlockMatrix sum_of_rows(std::int32_t rows, const BlockMatrix& b, const Terms& terms) {
-    BlockMatrix result;
-    result.columns = b.columns;
-    result.start.assign(at(rows) + 1, 0);
-    const auto for_row_chunks = [&](const auto& work) {
-        for_chunks(at((rows + rows_in_chunk - 1) / rows_in_chunk), [&](std::size_t chunk) {
-            const std::int32_t first = static_cast<std::int32_t>(chunk) * rows_in_chunk;
-            work(first, std::min(rows, first + rows_in_chunk));
-        });
-    };
-    for_row_chunks([&](std::int32_t first_row, std::int32_t last_row) {
-        std::vector<std::int32_t> seen(at(b.columns), -1);
-        for (std::int32_t row = first_row; row < last_row; ++row) {
-            std::int64_t count = 0;
-            terms(row, [&](const Mat6&, std::int32_t middle) {
-                for (std::int64_t k = b.first(middle); k < b.last(middle); ++k) {
-                    std::int32_t& last_seen = seen[at(b.column[at(k)])];
-                    if (last_seen != row) ++count;
-                    last_seen = row;
-                }
-            });
-            result.start[at(row) + 1] = count;
-        }
-    });
-    for (std::size_t row = 0; row < at(rows); ++row) result.start[row + 1] += result.start[row];
-    result.column.resize(at(result.start.back()));
-    result.block.resize(at(result.start.back()));
-    for_row_chunks([&](std::int32_t first_row, std::int32_t last_row) {
-        std::vector<std::int64_t> slot(at(b.columns), -1);
-        for (std::int32_t row = first_row; row < last_row; ++row) {
-            const std::int64_t first = result.first(row);
-            std::int64_t end = first;
-            terms(row, [&](const Mat6&, std::int32_t middle) {
-                for (std::int64_t k = b.first(middle); k < b.last(middle); ++k) {
-                    const std::int32_t column = b.column[at(k)];
-                    if (slot[at(column)] >= 0) continue;
-                    slot[at(column)] = 0;
-                    result.column[at(end++)] = column;
-                }
-            });
-            std::sort(result.column.begin() + first, result.column.begin() + end);
-            for (std::int64_t k = first; k < end; ++k) {
-                slot[at(result.column[at(k)])] = k;
-                result.block[at(k)].setZero();
-            }
-            terms(row, [&](const Mat6& left, std::int32_t middle) {
-                for (std::int64_t k = b.first(middle); k < b.last(middle); ++k) {
-                    result.block[at(slot[at(b.column[at(k)])])].noalias() += left.lazyProduct(b.block[at(k)]);
-                }
-            });
-            for (std::int64_t k = first; k < end; ++k) slot[at(result.column[at(k)])] = -1;
-        }
-    });
-    return result;
-}
-
-template <int width>
-Values<double, width> row_of_product(const BlockMatrix& matrix, std::int32_t row, const Batch<width>& x) {
-    RowSum<double, width> sum;
-    for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) sum.add(matrix.block[at(k)], x[at(matrix.column[at(k)])]);
-    return sum.values();
-}
 
 }  // namespace
 
@@ -89,51 +23,52 @@ ColumnIndex column_index(const BlockMatrix& matrix) {
     });
 }
 
-template <int width>
-void multiply(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y) {
+void multiply(const BlockMatrix& matrix, const Vector& x, Vector& y) {
     y.resize(at(matrix.rows()));
-    for_rows(y.size(), [&](std::size_t row) { y[row] = row_of_product(matrix, static_cast<std::int32_t>(row), x); }, worth_threads);
+    for_rows(
+        y.size(),
+        [&](std::size_t row) {
+            RowSum<double, 1> sum;
+            for (std::int64_t k = matrix.start[row]; k < matrix.start[row + 1]; ++k)
+                sum.add(matrix.block[at(k)], x[at(matrix.column[at(k)])]);
+            y[row] = sum.values();
+        },
+        worth_threads);
 }
 
-template <int width>
-PerField<width> multiply_and_dot(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y) {
-    y.resize(at(matrix.rows()));
-    return sum_over_chunks<width>(y.size(), [&](std::size_t first, std::size_t last) {
-        PerField<width> sum = PerField<width>::Zero();
-        for (std::size_t row = first; row < last; ++row) {
-            y[row] = row_of_product(matrix, static_cast<std::int32_t>(row), x);
-            sum += x[row].cwiseProduct(y[row]).colwise().sum().array();
-        }
-        return sum;
-    });
+BlockMatrix joined(std::int32_t columns, std::vector<BlockMatrix> parts) {
+    BlockMatrix matrix;
+    matrix.columns = columns;
+    std::size_t blocks = 0;
+    for (const BlockMatrix& part : parts) blocks += part.block.size();
+    matrix.column.reserve(blocks);
+    matrix.block.reserve(blocks);
+    for (BlockMatrix& part : parts) {
+        const std::int64_t before = matrix.start.back();
+        for (std::int32_t row = 0; row < part.rows(); ++row) matrix.start.push_back(before + part.last(row));
+        matrix.column.insert(matrix.column.end(), part.column.begin(), part.column.end());
+        matrix.block.insert(matrix.block.end(), part.block.begin(), part.block.end());
+        part = {};
+    }
+    return matrix;
 }
-
-template <int width>
-void residual(const BlockMatrix& matrix, const Batch<width>& x, const Batch<width>& b, Batch<width>& r) {
-    r.resize(at(matrix.rows()));
-    for_rows(r.size(), [&](std::size_t row) {
-        r[row] = b[row] - row_of_product(matrix, static_cast<std::int32_t>(row), x);
-    }, worth_threads);
-}
-
-template void multiply(const BlockMatrix&, const Batch<1>&, Batch<1>&);
-template void multiply(const BlockMatrix&, const Batch<6>&, Batch<6>&);
-template PerField<1> multiply_and_dot(const BlockMatrix&, const Batch<1>&, Batch<1>&);
-template PerField<6> multiply_and_dot(const BlockMatrix&, const Batch<6>&, Batch<6>&);
-template void residual(const BlockMatrix&, const Batch<1>&, const Batch<1>&, Batch<1>&);
-template void residual(const BlockMatrix&, const Batch<6>&, const Batch<6>&, Batch<6>&);
 
 BlockMatrix product(const BlockMatrix& a, const BlockMatrix& b) {
-    return sum_of_rows(a.rows(), b, [&](std::int32_t row, const auto& visit) {
-        for (std::int64_t k = a.first(row); k < a.last(row); ++k) visit(a.block[at(k)], a.column[at(k)]);
+    return matrix_of_rows(a.rows(), b.columns, [&](std::int32_t row, SparseRow& sum) {
+        for (std::int64_t k = a.first(row); k < a.last(row); ++k) {
+            const std::int32_t middle = a.column[at(k)];
+            for (std::int64_t p = b.first(middle); p < b.last(middle); ++p)
+                sum.at(b.column[at(p)]).noalias() += a.block[at(k)].lazyProduct(b.block[at(p)]);
+        }
     });
 }
 
 BlockMatrix transposed_product(const BlockMatrix& a, const ColumnIndex& columns, const BlockMatrix& b) {
-    return sum_of_rows(a.columns, b, [&](std::int32_t column, const auto& visit) {
+    return matrix_of_rows(a.columns, b.columns, [&](std::int32_t column, SparseRow& sum) {
         for (const auto& [row, block] : columns.of(at(column))) {
             const Mat6 transposed = a.block[at(block)].transpose();
-            visit(transposed, row);
+            for (std::int64_t p = b.first(row); p < b.last(row); ++p)
+                sum.at(b.column[at(p)]).noalias() += transposed.lazyProduct(b.block[at(p)]);
         }
     });
 }

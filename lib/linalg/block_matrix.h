@@ -61,19 +61,8 @@ using ColumnIndex = Grouping<ColumnEntry>;
 
 ColumnIndex column_index(const BlockMatrix& matrix);
 
-// Batches are of width 1 or 6.
-
 /// y = A x. Rows are summed one by one, so the number of threads does not change a bit.
-template <int width>
-void multiply(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y);
-
-/// y = A x, and x . y of each field.
-template <int width>
-PerField<width> multiply_and_dot(const BlockMatrix& matrix, const Batch<width>& x, Batch<width>& y);
-
-/// r = b - A x.
-template <int width>
-void residual(const BlockMatrix& matrix, const Batch<width>& x, const Batch<width>& b, Batch<width>& r);
+void multiply(const BlockMatrix& matrix, const Vector& x, Vector& y);
 
 /// Calls work(first, last) for chunks of the range of indices, which do not depend on the number of threads, and sums what it
 /// gives for each field in their order.
@@ -94,6 +83,9 @@ PerField<width> norms(const Batch<width>& x) {
         return sum;
     }).sqrt();
 }
+
+/// Matrices under each other, of so many columns.
+BlockMatrix joined(std::int32_t columns, std::vector<BlockMatrix> parts);
 
 /// A B.
 BlockMatrix product(const BlockMatrix& a, const BlockMatrix& b);

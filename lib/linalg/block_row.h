@@ -1,4 +1,4 @@
-// block_row.h: sums of 6x6 blocks times the values of particles, in vectors of 16 bytes, or of 32 where the processor has them.
+// block_row.h: sums of 6x6 blocks times the values of particles, in vectors of 16 bytes.
 #pragma once
 
 #include <algorithm>
@@ -134,43 +134,9 @@ struct Term {
     const Values<Real, width>* x;
 };
 
-#if defined(__x86_64__)
-inline const bool has_wide_vectors = (__builtin_cpu_init(), __builtin_cpu_supports("avx2") != 0);
-
-/// As RowSum does it for eight fields, to the last bit: the same products are added in the same order, without fusing.
-template <bool transposed, typename TermAt>
-[[gnu::target("avx2")]] void sum_wide(std::int64_t count, const TermAt& term_at, float* to) {
-    using Wide [[gnu::vector_size(32)]] = float;
-    Wide sum[6] = {};
-    for (std::int64_t k = 0; k < count; ++k) {
-        const Term<float, 8> term = term_at(k);
-        const float *block = term.block->data(), *x = term.x->data();
-#pragma GCC unroll 6
-        for (int column = 0; column < 6; ++column) {
-            Wide of_column;
-            std::memcpy(&of_column, x + 8 * column, sizeof of_column);
-#pragma GCC unroll 6
-            for (int row = 0; row < 6; ++row) sum[row] += block[transposed ? 6 * row + column : 6 * column + row] * of_column;
-        }
-    }
-    std::memcpy(to, sum, sizeof sum);
-}
-#else
-inline constexpr bool has_wide_vectors = false;
-#endif
-
-/// Sum of block times x over term_at(0) to term_at(count - 1). The same bytes on all processors.
+/// Sum of block times x over term_at(0) to term_at(count - 1).
 template <typename Real, int width, bool transposed = false, typename TermAt>
 Values<Real, width> sum_of_terms(std::int64_t count, const TermAt& term_at) {
-#if defined(__x86_64__)
-    if constexpr (std::is_same_v<Real, float> && width == 8) {
-        if (has_wide_vectors) {
-            Values<Real, width> values;
-            sum_wide<transposed>(count, term_at, values.data());
-            return values;
-        }
-    }
-#endif
     RowSum<Real, width, transposed> sum;
     for (std::int64_t k = 0; k < count; ++k) {
         const Term<Real, width> term = term_at(k);

@@ -23,30 +23,41 @@ struct Products {
     }
 };
 
+template <int width>
+PerField<width> sums(const Values<double, width>& values) { return values.colwise().sum().array(); }
+
+/// Fields of a batch as one, for those who change them.
+template <int width, int all>
+auto fields_of(Values<double, all>& values, int first) {
+    return values.template middleCols<width>(first);
+}
+
 /// One pass of conjugate gradients over all fields that are not done. M in single precision is not the same in each iteration, to
 /// rounding; directions are made conjugate to the last one by r_(k+1) . z_(k+1) - r_k . z_(k+1) (Polak & Ribiere; Golub & Ye, SIAM
-/// J. Sci. Comput. 21 (1999) 1305), which equals the usual r_(k+1) . z_(k+1) for an exact M.
-template <int width>
+/// J. Sci. Comput. 21 (1999) 1305), which equals the usual r_(k+1) . z_(k+1) for an exact M. Directions are kept in single
+/// precision too, in a unit of their own: x and r follow them as they are.
+template <int width, int all>
 class Pass {
    public:
-    Pass(const BlockMatrix& matrix, const Preconditioner<width>& precondition, Batch<width>& x, Batch<width>& r)
-        : matrix_(matrix), precondition_(precondition), x_(x), r_(r), q_(r.size(), Values<double, width>::Zero()) {}
+    Pass(const Springs<double>& matrix, Multigrid& preconditioner, Batch<all>& x, int first, Batch<width>& r)
+        : matrix_(matrix), preconditioner_(preconditioner), x_(x), first_(first), r_(r), q_(r.size()), p_(r.size()) {}
 
     /// left: norms of r; iterations are added to what each report has.
     void run(const PerField<width>& left, const PerField<width>& goal, int max_iterations, const StopRequest& stop,
              std::array<SolveReport, width>& reports) {
-        PerField<width> size = left, step, ratio;
+        PerField<width> size = left, step, ratio = PerField<width>::Zero();
         const auto unfinished = [&](int field) {
             return size[field] > goal[field] && reports[static_cast<std::size_t>(field)].iterations < max_iterations;
         };
         std::array<bool, width> active;
         for (int field = 0; field < width; ++field) active[static_cast<std::size_t>(field)] = unfinished(field);
-        precondition_(r_, z_);
-        PerField<width> product = products().rz;
-        p_ = z_;
+        const auto first = preconditioner_.apply<width>(r_, size);
+        const PerField<width> unit = (first.unit > 0.0).select(first.unit, 1.0);
+        PerField<width> product = products(first.motion, PerField<width>::Ones()).rz;
+        turn(first.motion, PerField<width>::Ones(), ratio);
         while (true) {
             throw_if_stopped(stop);
-            const PerField<width> curvature = multiply_and_dot<width>(matrix_, p_, q_);
+            const PerField<width> curvature = multiply();
             bool any = false;
             for (int field = 0; field < width; ++field) {
                 bool& on = active[static_cast<std::size_t>(field)];
@@ -69,25 +80,41 @@ class Pass {
                 any = any || on;
             }
             if (!any) return;
-            precondition_(r_, z_);
-            const Products<width> next = products();
+            throw_if_stopped(stop);
+            const auto z = preconditioner_.apply<width>(r_, size);
+            const PerField<width> factor = z.unit / unit;
+            const Products<width> next = products(z.motion, factor);
             for (int field = 0; field < width; ++field) {
                 const bool on = active[static_cast<std::size_t>(field)];
                 ratio[field] = on ? -step[field] * next.qz[field] / product[field] : 0.0;
             }
             product = next.rz;
-            turn(ratio);
+            turn(z.motion, factor, ratio);
         }
     }
 
    private:
+    using Motions = std::vector<Freedoms<float, width>>;
+
+    /// q = A p; gives p . q.
+    PerField<width> multiply() {
+        return sum_chunks(matrix_.chunks(), PerField<width>(PerField<width>::Zero()), [&](std::size_t chunk) {
+            PerField<width> sum = PerField<width>::Zero();
+            matrix_.for_forces<width>(chunk, p_, [&](std::size_t node, const Freedoms<double, width>& force) {
+                q_[node] = values_of(force);
+                sum += sums<width>(q_[node].cwiseProduct(values_of(p_[node])));
+            });
+            return sum;
+        });
+    }
+
     /// x += step p, r -= step q; gives the norms of r.
     PerField<width> advance(const PerField<width>& step) {
         const auto factors = step.matrix().asDiagonal();
         return sum_over_chunks<width>(x_.size(), [&](std::size_t first, std::size_t last) {
             PerField<width> sum = PerField<width>::Zero();
             for (std::size_t i = first; i < last; ++i) {
-                x_[i] += p_[i] * factors;
+                fields_of<width, all>(x_[i], first_) += values_of(p_[i]) * factors;
                 r_[i] -= q_[i] * factors;
                 sum += r_[i].colwise().squaredNorm().array();
             }
@@ -95,46 +122,60 @@ class Pass {
         }).sqrt();
     }
 
-    Products<width> products() const {
+    /// z: in units of p times the factor.
+    Products<width> products(const Motions& z, const PerField<width>& factor) const {
         constexpr std::size_t in_chunk = 1024;
         const Products<width> zero{PerField<width>::Zero(), PerField<width>::Zero()};
-        return sum_chunks((r_.size() + in_chunk - 1) / in_chunk, zero, [&](std::size_t chunk) {
+        Products<width> total = sum_chunks((r_.size() + in_chunk - 1) / in_chunk, zero, [&](std::size_t chunk) {
             Products<width> sum = zero;
             for (std::size_t i = chunk * in_chunk; i < std::min(r_.size(), (chunk + 1) * in_chunk); ++i) {
-                sum.rz += r_[i].cwiseProduct(z_[i]).colwise().sum().array();
-                sum.qz += q_[i].cwiseProduct(z_[i]).colwise().sum().array();
+                const Values<double, width> values = values_of(z[i]);
+                sum.rz += sums<width>(r_[i].cwiseProduct(values));
+                sum.qz += sums<width>(q_[i].cwiseProduct(values));
             }
             return sum;
         });
+        total.rz *= factor;
+        total.qz *= factor;
+        return total;
     }
 
-    /// p = z + ratio p.
-    void turn(const PerField<width>& ratio) {
-        const auto factors = ratio.matrix().asDiagonal();
-        for_rows(p_.size(), [&](std::size_t i) { p_[i] = z_[i] + p_[i] * factors; }, worth_threads);
+    /// p = factor z + ratio p.
+    void turn(const Motions& z, const PerField<width>& factor, const PerField<width>& ratio) {
+        const auto factors = factor.matrix().asDiagonal(), ratios = ratio.matrix().asDiagonal();
+        for_rows(
+            p_.size(),
+            [&](std::size_t i) {
+                p_[i] = motion_of<float, width>(Values<double, width>(values_of(z[i]) * factors + values_of(p_[i]) * ratios));
+            },
+            worth_threads);
     }
 
-    const BlockMatrix& matrix_;
-    const Preconditioner<width>& precondition_;
-    Batch<width>&x_, &r_;
-    Batch<width> z_, p_, q_;
+    const Springs<double>& matrix_;
+    Multigrid& preconditioner_;
+    Batch<all>& x_;
+    int first_;
+    Batch<width>&r_, q_;
+    Motions p_;
 };
 
 }  // namespace
 
-template <int width>
-std::array<SolveReport, width> solve_blocks(const BlockMatrix& matrix, const Preconditioner<width>& precondition,
-                                            const Batch<width>& b, Batch<width>& x, double tolerance, int max_iterations,
-                                            const StopRequest& stop) {
+template <int width, int all>
+std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Multigrid& preconditioner, const Batch<all>& b,
+                                             Batch<all>& x, int first, double tolerance, int max_iterations,
+                                             const StopRequest& stop) {
     std::array<SolveReport, width> reports;
-    const PerField<width> size = norms<width>(b), goal = tolerance * size;
+    if (x.empty()) x.resize(b.size(), Values<double, all>::Zero());
+    const Columns<width, all> loads{b, first}, fields{x, first};
+    const PerField<width> size = sum_over_chunks<width>(b.size(), [&](std::size_t begin, std::size_t end) {
+        PerField<width> sum = PerField<width>::Zero();
+        for (std::size_t i = begin; i < end; ++i) sum += b[i].template middleCols<width>(first).colwise().squaredNorm().array();
+        return sum;
+    }).sqrt();
+    const PerField<width> goal = tolerance * size;
     Batch<width> r;
-    if (x.empty()) {
-        x.resize(b.size(), Values<double, width>::Zero());
-        r = b;
-    } else {
-        residual<width>(matrix, x, b, r);
-    }
+    residual(matrix, fields, loads, r);
     PerField<width> left = norms<width>(r);
     const auto unfinished = [&] {
         bool any = false;
@@ -143,8 +184,8 @@ std::array<SolveReport, width> solve_blocks(const BlockMatrix& matrix, const Pre
         return any;
     };
     for (int pass = 0; pass <= max_restarts && unfinished(); ++pass) {
-        Pass<width>(matrix, precondition, x, r).run(left, goal, max_iterations, stop, reports);
-        residual<width>(matrix, x, b, r);
+        Pass<width, all>(matrix, preconditioner, x, first, r).run(left, goal, max_iterations, stop, reports);
+        residual(matrix, fields, loads, r);
         left = norms<width>(r);
     }
     for (int field = 0; field < width; ++field) {
@@ -155,9 +196,9 @@ std::array<SolveReport, width> solve_blocks(const BlockMatrix& matrix, const Pre
     return reports;
 }
 
-template std::array<SolveReport, 1> solve_blocks<1>(const BlockMatrix&, const Preconditioner<1>&, const Batch<1>&, Batch<1>&,
-                                                    double, int, const StopRequest&);
-template std::array<SolveReport, 6> solve_blocks<6>(const BlockMatrix&, const Preconditioner<6>&, const Batch<6>&, Batch<6>&,
-                                                    double, int, const StopRequest&);
+template std::array<SolveReport, 1> solve_springs<1, 1>(const Springs<double>&, Multigrid&, const Batch<1>&, Batch<1>&, int, double,
+                                                        int, const StopRequest&);
+template std::array<SolveReport, 3> solve_springs<3, 6>(const Springs<double>&, Multigrid&, const Batch<6>&, Batch<6>&, int, double,
+                                                        int, const StopRequest&);
 
 }  // namespace kiln::linalg

@@ -1,11 +1,11 @@
-// block_solver.h: preconditioned conjugate gradients for systems of 6x6 blocks.
+// block_solver.h: preconditioned conjugate gradients for nodes that springs connect.
 #pragma once
 
 #include <array>
-#include <functional>
 
 #include "core/stop.h"
-#include "linalg/block_matrix.h"
+#include "linalg/multigrid.h"
+#include "linalg/springs.h"
 
 namespace kiln::linalg {
 
@@ -15,17 +15,14 @@ struct SolveReport {
     bool converged = false;
 };
 
-template <int width>
-using Preconditioner = std::function<void(const Batch<width>& r, Batch<width>& z)>;  // z = M^-1 r, of each field
-
-/// Improves each field of x until the norm of b - A x is at most `tolerance` times that of b, or max_iterations are done. What the
-/// iteration has lost by rounding is solved for again. An empty x is zero. Fields are independent of each other, but for the
-/// reading of A and M.
-/// A: symmetric positive semidefinite with b in its range; M symmetric positive definite, or nearly so. Width: 1 or 6.
+/// Improves `width` fields of x, from the column `first` on, until the norm of b - A x of each is at most `tolerance` times that of
+/// b, or max_iterations are done. What the iteration has lost by rounding is solved for again. An empty x is zero. Fields are
+/// independent of each other, but for the reading of A and M.
+/// A: symmetric positive semidefinite with b in its range. Widths: 1 of 1, 3 of 6.
 /// Throws Error where a number is not finite, Interrupted where a stop is requested.
-template <int width>
-std::array<SolveReport, width> solve_blocks(const BlockMatrix& matrix, const Preconditioner<width>& precondition,
-                                            const Batch<width>& b, Batch<width>& x, double tolerance, int max_iterations,
-                                            const StopRequest& stop = {});
+template <int width, int all>
+std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Multigrid& preconditioner, const Batch<all>& b,
+                                             Batch<all>& x, int first, double tolerance, int max_iterations,
+                                             const StopRequest& stop = {});
 
 }  // namespace kiln::linalg

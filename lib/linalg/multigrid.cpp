@@ -7,14 +7,21 @@
 
 #include "linalg/aggregation.h"
 #include "linalg/block_row.h"
+#include "linalg/spring_coarsening.h"
 
 namespace kiln::linalg {
 
 namespace {
 
-constexpr std::int32_t coarsest_nodes = 150;        // factorised densely: 900 unknowns
+constexpr std::size_t coarsest_nodes = 150;        // factorised densely: 900 unknowns
 constexpr double prolongation_damping = 4.0 / 3.0;  // over the largest eigenvalue (Vanek et al. 1996)
-constexpr double smoothed_part = 0.2;               // the smoother damps eigenvalues from this share of the largest one upwards
+/// Steps of the smoother, and the share of the largest eigenvalue from which upwards it damps. Aggregates of the finest level are
+/// larger, of two rings of neighbours: steps there are cheap.
+struct Smoothing {
+    int steps;
+    double part;
+};
+constexpr Smoothing finest_smoothing{3, 0.1}, coarse_smoothing{2, 0.2};
 constexpr int power_steps = 10;
 constexpr double power_margin = 1.1;  // the power iteration ends below the largest eigenvalue
 
@@ -22,12 +29,13 @@ std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
 
 std::vector<Mat6> inverse_diagonal(const BlockMatrix& matrix) {
     std::vector<Mat6> inverse(at(matrix.rows()));
-    for_rows(inverse.size(), [&](std::size_t index) {
-        const auto row = static_cast<std::int32_t>(index);
-        for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
-            if (matrix.column[at(k)] == row) inverse[index] = matrix.block[at(k)].llt().solve(Mat6::Identity());
-        }
-    }, worth_threads);
+    for_rows(
+        inverse.size(),
+        [&](std::size_t row) {
+            for (std::int64_t k = matrix.start[row]; k < matrix.start[row + 1]; ++k)
+                if (at(matrix.column[at(k)]) == row) inverse[row] = matrix.block[at(k)].llt().solve(Mat6::Identity());
+        },
+        worth_threads);
     return inverse;
 }
 
@@ -51,20 +59,40 @@ double max_eigenvalue(const BlockMatrix& matrix, const std::vector<Mat6>& invers
 /// (I - omega D^-1 A) P.
 BlockMatrix smoothed(const BlockMatrix& matrix, const std::vector<Mat6>& inverse, double omega, const BlockMatrix& rigid) {
     BlockMatrix result = product(matrix, rigid);
-    for_rows(inverse.size(), [&](std::size_t index) {
-        const auto row = static_cast<std::int32_t>(index);
-        const Mat6 factor = -omega * inverse[index];
-        for (std::int64_t k = result.first(row); k < result.last(row); ++k) {
-            Mat6& block = result.block[at(k)];
-            block = factor * block;
-            if (result.column[at(k)] == rigid.column[index]) block += rigid.block[index];
-        }
-    }, worth_threads);
+    for_rows(
+        inverse.size(),
+        [&](std::size_t row) {
+            const Mat6 factor = -omega * inverse[row];
+            for (std::int64_t k = result.start[row]; k < result.start[row + 1]; ++k) {
+                Mat6& block = result.block[at(k)];
+                block = factor * block;
+                if (result.column[at(k)] == rigid.column[row]) block += rigid.block[row];
+            }
+        },
+        worth_threads);
+    return result;
+}
+
+/// Place of a node's first freedom in a dense matrix.
+Eigen::Index from(std::int32_t node) { return 6 * static_cast<Eigen::Index>(node); }
+
+Eigen::MatrixXd dense(const Springs<double>& matrix) {
+    const Eigen::Index size = from(static_cast<std::int32_t>(matrix.nodes()));
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
+    for (const Spring<double>& spring : matrix.springs()) {
+        const SpringBlocks blocks = blocks_of(spring);
+        const Eigen::Index i = from(spring.first), j = from(spring.second);
+        result.block<6, 6>(i, i) += blocks.ii;
+        result.block<6, 6>(j, j) += blocks.jj;
+        result.block<6, 6>(i, j) += blocks.ij;
+        result.block<6, 6>(j, i) += blocks.ij.transpose();
+    }
+    for (const auto& [node, stiffness] : matrix.held())
+        result.diagonal().segment<6>(from(static_cast<std::int32_t>(node))) += stiffness;
     return result;
 }
 
 Eigen::MatrixXd dense(const BlockMatrix& matrix) {
-    const auto from = [](std::int32_t block) { return 6 * static_cast<Eigen::Index>(block); };
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(from(matrix.rows()), from(matrix.columns));
     for (std::int32_t row = 0; row < matrix.rows(); ++row) {
         for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k) {
@@ -87,13 +115,43 @@ BasicBlockMatrix<Real> rounded(const BlockMatrix& matrix, double factor) {
     return {matrix.columns, matrix.start, matrix.column, rounded<Real>(matrix.block, factor)};
 }
 
-/// A power of two that takes the greatest diagonal value of a matrix to the order of one: single precision has a narrow range.
-double unit_scale(const BlockMatrix& matrix) {
+/// Takes the greatest stiffness to one: single precision has a narrow range, and rounds the same whatever the units.
+double unit_scale(const Springs<double>& matrix) {
     double greatest = 0.0;
-    for (std::int32_t row = 0; row < matrix.rows(); ++row)
-        for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k)
-            if (matrix.column[at(k)] == row) greatest = std::max(greatest, matrix.block[at(k)].diagonal().maxCoeff());
-    return greatest > 0.0 && std::isfinite(greatest) ? std::exp2(-std::ilogb(greatest)) : 1.0;
+    for (const Spring<double>& spring : matrix.springs()) {
+        const double arm = Eigen::Map<const Vec3>(spring.arm).squaredNorm();
+        greatest = std::max({greatest, spring.shear + spring.axial * arm, spring.bending + spring.twisting * arm});
+    }
+    for (const auto& [node, stiffness] : matrix.held()) greatest = std::max(greatest, stiffness.maxCoeff());
+    return greatest > 0.0 && std::isfinite(greatest) ? 1.0 / greatest : 1.0;
+}
+
+[[noreturn]] void throw_unconnected(std::size_t nodes) {
+    throw Error("the matrix has " + std::to_string(nodes) + " nodes that nothing connects, so it cannot be coarsened");
+}
+
+std::vector<Vec3> roots_of(const Aggregates& aggregates, const NodeGeometry& geometry) {
+    std::vector<Vec3> roots;
+    for (const std::int32_t root : aggregates.root) roots.push_back(geometry.position[at(root)]);
+    return roots;
+}
+
+/// A step of the Chebyshev iteration: d <- memory d + gain D^-1 (b - A x), x <- x + d.
+struct ChebyshevStep {
+    double memory, gain;
+};
+
+/// Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1.
+std::vector<ChebyshevStep> chebyshev_steps(const Smoothing& smoothing, double high) {
+    const double low = smoothing.part * high, theta = (high + low) / 2.0, delta = (high - low) / 2.0;
+    std::vector<ChebyshevStep> steps{{0.0, 1.0 / theta}};
+    double rho = delta / theta;
+    while (std::ssize(steps) < smoothing.steps) {
+        const double next = 1.0 / (2.0 * theta / delta - rho);
+        steps.push_back({next * rho, 2.0 * next / delta});
+        rho = next;
+    }
+    return steps;
 }
 
 template <typename Real, int lanes>
@@ -110,35 +168,86 @@ Values<Real, lanes> block_product(const Eigen::Matrix<Real, 6, 6>& block, const 
     return sum_of_terms<Real, lanes>(1, [&](std::int64_t) { return Term<Real, lanes>{&block, &x}; });
 }
 
+/// Motions of a node of the finest level as those of a coarser one.
+template <typename Real>
+Values<Real, 1> coarse(const Freedoms<Real, 1>& motion) {
+    Values<Real, 1> values;
+    for (int component = 0; component < 6; ++component) values[component] = motion.data()[Freedoms<Real, 1>::place(component, 0)];
+    return values;
+}
+template <typename Real>
+Values<Real, 4> coarse(const Freedoms<Real, 3>& motion) { return Eigen::Map<const Values<Real, 4>>(motion.data()); }
+
+template <typename Real>
+Freedoms<Real, 1> fine(const Values<Real, 1>& values) {
+    Freedoms<Real, 1> motion{};
+    for (int component = 0; component < 6; ++component) motion.data()[Freedoms<Real, 1>::place(component, 0)] = values[component];
+    return motion;
+}
+template <typename Real>
+Freedoms<Real, 3> fine(const Values<Real, 4>& values) {
+    Freedoms<Real, 3> motion;
+    std::memcpy(motion.data(), values.data(), sizeof motion);
+    return motion;
+}
+
 }  // namespace
 
 template <typename Real>
-BasicMultigrid<Real>::BasicMultigrid(const BlockMatrix& matrix, NodeGeometry geometry, double max_eigenvalue) {
-    build(matrix, std::move(geometry), max_eigenvalue);
+BasicMultigrid<Real>::BasicMultigrid(const Springs<double>& matrix, NodeGeometry geometry, double max_eigenvalue)
+    : scale_(unit_scale(matrix)) {
+    if (matrix.nodes() <= coarsest_nodes) {
+        factorise(dense(matrix));
+        return;
+    }
+    BlockMatrix coarser = build_finest(matrix, geometry, max_eigenvalue);
+    build_coarser(std::move(coarser), std::move(geometry));
 }
 
 template <typename Real>
-void BasicMultigrid<Real>::build(const BlockMatrix& finest, NodeGeometry geometry, double max_eigenvalue_bound) {
-    scale_ = unit_scale(finest);
-    BlockMatrix coarse;  // of the level, but for the finest
+void BasicMultigrid<Real>::factorise(Eigen::MatrixXd matrix) {
+    matrix *= scale_;
+    matrix.diagonal().array() += 1e-14 * matrix.diagonal().maxCoeff();
+    coarsest_.compute(matrix);
+}
+
+/// The coarser matrix; geometry: becomes that of the aggregates.
+template <typename Real>
+BlockMatrix BasicMultigrid<Real>::build_finest(const Springs<double>& matrix, NodeGeometry& geometry, double max_eigenvalue) {
+    Aggregates aggregates = find_aggregates(couplings_of(matrix), 2);
+    // Each level has fewer nodes than the one before; nodes that nothing connects would never become fewer.
+    if (aggregates.root.size() >= matrix.nodes()) throw_unconnected(matrix.nodes());
+    std::vector<Mat6> inverse = diagonal_blocks(matrix);
+    for_rows(
+        inverse.size(), [&](std::size_t node) { inverse[node] = inverse[node].llt().solve(Mat6::Identity()).eval(); },
+        worth_threads);
+    finest_.max_eigenvalue = max_eigenvalue;
+    const std::vector<Vec3> arms = arms_of(aggregates, geometry);
+    BlockMatrix coarser = coarse_matrix(matrix, inverse, prolongation_damping / max_eigenvalue, aggregates, arms);
+    finest_.inverse_diagonal = rounded<Real>(inverse, 1.0 / scale_);
+    finest_.springs = Springs<Real>(matrix, scale_);
+    for (const Vec3& arm : arms)
+        finest_.arm.push_back({static_cast<Real>(arm[0]), static_cast<Real>(arm[1]), static_cast<Real>(arm[2])});
+    finest_.members = group_by<std::int32_t>(aggregates.root.size(), [&](const auto& visit) {
+        for (std::size_t node = 0; node < aggregates.of.size(); ++node)
+            visit(at(aggregates.of[node]), static_cast<std::int32_t>(node));
+    });
+    geometry.position = roots_of(aggregates, geometry);
+    finest_.aggregate = std::move(aggregates.of);
+    return coarser;
+}
+
+template <typename Real>
+void BasicMultigrid<Real>::build_coarser(BlockMatrix matrix, NodeGeometry geometry) {
     while (true) {
-        const BlockMatrix& matrix = levels_.empty() ? finest : coarse;
         Level& level = levels_.emplace_back();
         level.nodes = at(matrix.rows());
         level.blocks = matrix.block.size();
-        if (matrix.rows() <= coarsest_nodes) {
-            Eigen::MatrixXd full = scale_ * dense(matrix);
-            full.diagonal().array() += 1e-14 * full.diagonal().maxCoeff();
-            coarsest_.compute(full);
-            return;
-        }
+        if (level.nodes <= coarsest_nodes) return factorise(dense(matrix));
         const std::vector<Mat6> inverse = inverse_diagonal(matrix);
-        level.max_eigenvalue = levels_.size() == 1 ? max_eigenvalue_bound : max_eigenvalue(matrix, inverse);
-        const Aggregates aggregates = find_aggregates(matrix);
-        // Each level has fewer nodes than the one before, so the loop ends; nodes that nothing connects would never become fewer.
-        if (aggregates.root.size() >= at(matrix.rows()))
-            throw Error("the matrix has " + std::to_string(matrix.rows()) +
-                        " nodes that nothing connects, so it cannot be coarsened");
+        level.max_eigenvalue = max_eigenvalue(matrix, inverse);
+        const Aggregates aggregates = find_aggregates(couplings_of(matrix), 1);
+        if (aggregates.root.size() >= level.nodes) throw_unconnected(level.nodes);
         const BlockMatrix prolongation = smoothed(matrix, inverse, prolongation_damping / level.max_eigenvalue,
                                                   rigid_prolongation(aggregates, geometry));
         level.restriction = column_index(prolongation);
@@ -146,117 +255,218 @@ void BasicMultigrid<Real>::build(const BlockMatrix& finest, NodeGeometry geometr
         level.prolongation = rounded<Real>(prolongation, 1.0);
         level.inverse_diagonal = rounded<Real>(inverse, 1.0 / scale_);
         level.matrix = rounded<Real>(matrix, scale_);
-        coarse = std::move(coarser);
-        std::vector<Vec3> roots;
-        for (const std::int32_t root : aggregates.root) roots.push_back(geometry.position[at(root)]);
-        geometry.position = std::move(roots);
+        matrix = std::move(coarser);
+        geometry.position = roots_of(aggregates, geometry);
     }
 }
 
 template <typename Real>
 double BasicMultigrid<Real>::complexity() const {
-    double blocks = 0.0;
+    const auto finest = static_cast<double>(finest_.springs.nodes() + 2 * finest_.springs.springs().size());
+    double blocks = finest;
     for (const Level& level : levels_) blocks += static_cast<double>(level.blocks);
-    return blocks / static_cast<double>(levels_.front().blocks);
+    return finest > 0.0 ? blocks / finest : 1.0;
 }
 
-/// Two steps of the Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1).
+/// load <- load - A step, step <- memory step + gain D^-1 load, and adds it to the solution.
+template <typename Real>
+template <int width>
+void BasicMultigrid<Real>::step(FinestFields<width>& fields, double memory, double gain, bool adding) const {
+    using Node = Freedoms<Real, width>;
+    std::vector<Node>&load = fields.load, &solution = fields.solution, &last = fields.step, &next = fields.next;
+    const Real factor = static_cast<Real>(gain), kept = static_cast<Real>(memory);
+    for_chunks(finest_.springs.chunks(), [&](std::size_t chunk) {
+        finest_.springs.template for_forces<width>(chunk, last, [&](std::size_t node, const Node& force) {
+            load[node] = load[node] - force;
+            next[node] = kept * last[node] + factor * (finest_.inverse_diagonal[node] * load[node]);
+            if (adding) solution[node] = solution[node] + next[node];
+        });
+    });
+    std::swap(last, next);
+}
+
+/// What the prolongation P = (I - omega D^-1 A) R does is done by the springs.
+template <typename Real>
+template <int width>
+void BasicMultigrid<Real>::cycle(AllFields<width>& fields) {
+    using Node = Freedoms<Real, width>;
+    auto& [load, solution, last, next] = fields.finest;
+    if (levels_.empty()) return solve_coarsest<width>(load, solution);
+    std::vector<Node>&loads = load, &x = solution, &steps = last;
+    const std::vector<ChebyshevStep> smoother = chebyshev_steps(finest_smoothing, finest_.max_eigenvalue);
+    const double damping = prolongation_damping / finest_.max_eigenvalue;
+    const Springs<Real>& springs = finest_.springs;
+    const auto smooth_on = [&] {
+        for (std::size_t k = 1; k < smoother.size(); ++k) step(fields.finest, smoother[k].memory, smoother[k].gain, true);
+    };
+    for_rows(
+        x.size(),
+        [&](std::size_t node) {
+            steps[node] = static_cast<Real>(smoother[0].gain) * (finest_.inverse_diagonal[node] * loads[node]);
+            x[node] = steps[node];
+        },
+        worth_threads);
+    smooth_on();
+    // Restriction of what is left.
+    step(fields.finest, 0.0, damping, false);
+    std::vector<Node>& rest = fields.finest.next;
+    for_chunks(springs.chunks(), [&](std::size_t chunk) {
+        springs.template for_forces<width>(chunk, fields.finest.step,
+                                           [&](std::size_t node, const Node& force) { rest[node] = loads[node] - force; });
+    });
+    auto& coarser = fields.coarser.front();
+    for_rows(
+        coarser.load.size(),
+        [&](std::size_t aggregate) {
+            Node sum{};
+            for (const std::int32_t member : finest_.members.of(aggregate)) {
+                const Node& force = rest[at(member)];
+                sum.u = sum.u + force.u;
+                sum.q = sum.q + force.q + Arm<Real, width>(finest_.arm[at(member)].data()).cross(force.u);
+            }
+            coarser.load[aggregate] = coarse(sum);
+        },
+        worth_threads);
+    cycle(fields.coarser, 0);
+    for_rows(
+        x.size(),
+        [&](std::size_t node) {
+            const Node motion = fine(coarser.solution[at(finest_.aggregate[node])]);
+            fields.finest.step[node] = {motion.u - Arm<Real, width>(finest_.arm[node].data()).cross(motion.q), motion.q};
+        },
+        worth_threads);
+    const Real weight = static_cast<Real>(damping);
+    for_chunks(springs.chunks(), [&](std::size_t chunk) {
+        springs.template for_forces<width>(chunk, fields.finest.step, [&](std::size_t node, const Node& force) {
+            fields.finest.next[node] = fields.finest.step[node] - weight * (finest_.inverse_diagonal[node] * force);
+            x[node] = x[node] + fields.finest.next[node];
+        });
+    });
+    std::swap(fields.finest.step, fields.finest.next);
+    step(fields.finest, 0.0, smoother[0].gain, true);
+    smooth_on();
+}
+
 template <typename Real>
 template <int lanes>
 void BasicMultigrid<Real>::smooth(const Level& level, Fields<lanes>& fields, bool from_zero) const {
-    const double high = level.max_eigenvalue, low = smoothed_part * high;
-    const double theta = (high + low) / 2.0, delta = (high - low) / 2.0;
-    const double first_rho = delta / theta, second_rho = 1.0 / (2.0 * theta / delta - first_rho);
-    const std::array factors{std::array{0.0, 1.0 / theta}, std::array{second_rho * first_rho, 2.0 * second_rho / delta}};
-    auto& [load, solution, steps] = fields;
-    // clang lets no structured binding into a lambda
-    std::vector<Values<Real, lanes>>&loads = load, &x = solution, &last = steps;
-    for (std::size_t step = 0; step < factors.size(); ++step) {
-        const Real memory = static_cast<Real>(factors[step][0]), gain = static_cast<Real>(factors[step][1]);
-        if (from_zero && step == 0) {
-            for_rows(level.nodes, [&](std::size_t i) {
-                last[i] = gain * block_product(level.inverse_diagonal[i], loads[i]);
-                x[i] = last[i];
-            }, worth_threads);
-            continue;
-        }
-        const bool first = step == 0;  // whatever stands in the step is not from this iteration
-        for_rows(level.nodes, [&](std::size_t i) {
+    std::vector<Values<Real, lanes>>&loads = fields.load, &x = fields.solution, &last = fields.step;
+    bool first = true;  // whatever stands in the step is not from this iteration
+    for (const ChebyshevStep& step : chebyshev_steps(coarse_smoothing, level.max_eigenvalue)) {
+        const Real memory = static_cast<Real>(step.memory), gain = static_cast<Real>(step.gain);
+        const auto change_at = [&](std::size_t i) {
+            if (first && from_zero) return Values<Real, lanes>(gain * block_product(level.inverse_diagonal[i], loads[i]));
             const Values<Real, lanes> rest = loads[i] - row_of_product(level.matrix, i, x);
-            const Values<Real, lanes> change = gain * block_product(level.inverse_diagonal[i], rest);
-            if (first)
-                last[i] = change;
-            else
-                last[i] = memory * last[i] + change;
-        }, worth_threads);
-        for_rows(level.nodes, [&](std::size_t i) { x[i] += last[i]; }, worth_threads);
+            return Values<Real, lanes>(gain * block_product(level.inverse_diagonal[i], rest));
+        };
+        for_rows(
+            level.nodes,
+            [&](std::size_t i) {
+                if (first)
+                    last[i] = change_at(i);
+                else
+                    last[i] = memory * last[i] + change_at(i);
+            },
+            worth_threads);
+        for_rows(
+            level.nodes,
+            [&](std::size_t i) {
+                if (first && from_zero)
+                    x[i] = last[i];
+                else
+                    x[i] += last[i];
+            },
+            worth_threads);
+        first = false;
+    }
+}
+
+/// Load and solution of all nodes.
+template <typename Real>
+template <int lanes, typename Load, typename Solution>
+void BasicMultigrid<Real>::solve_coarsest(const Load& load, Solution& solution) const {
+    const auto values_at = [](const auto& node) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(node)>, Values<Real, lanes>>)
+            return node.template cast<double>().eval();
+        else
+            return values_of(node);
+    };
+    Eigen::MatrixXd unknowns(6 * static_cast<Eigen::Index>(load.size()), lanes);
+    for (std::size_t node = 0; node < load.size(); ++node)
+        unknowns.middleRows<6>(6 * static_cast<Eigen::Index>(node)) = values_at(load[node]);
+    unknowns = coarsest_.solve(unknowns).eval();
+    for (std::size_t node = 0; node < load.size(); ++node) {
+        const Values<double, lanes> values = unknowns.middleRows<6>(6 * static_cast<Eigen::Index>(node));
+        if constexpr (std::is_same_v<typename Solution::value_type, Values<Real, lanes>>)
+            solution[node] = values.template cast<Real>();
+        else
+            solution[node] = motion_of<Real, lanes>(values);
     }
 }
 
 template <typename Real>
 template <int lanes>
-void BasicMultigrid<Real>::solve_coarsest(Fields<lanes>& fields) const {
-    using Unknowns = Eigen::Matrix<Real, Eigen::Dynamic, lanes, lanes == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-    const auto size = static_cast<Eigen::Index>(6 * fields.load.size());
-    const Eigen::Map<const Unknowns> load(fields.load.front().data(), size, lanes);
-    const Eigen::MatrixXd solution = coarsest_.solve(load.template cast<double>());
-    Eigen::Map<Unknowns>(fields.solution.front().data(), size, lanes) = solution.template cast<Real>();
+void BasicMultigrid<Real>::cycle(std::vector<Fields<lanes>>& fields, std::size_t index) const {
+    Fields<lanes>& here = fields[index];
+    if (index + 1 == levels_.size()) return solve_coarsest<lanes>(here.load, here.solution);
+    const Level& level = levels_[index];
+    Fields<lanes>& coarser = fields[index + 1];
+    smooth(level, here, true);
+    for_rows(
+        level.nodes, [&](std::size_t i) { here.step[i] = here.load[i] - row_of_product(level.matrix, i, here.solution); },
+        worth_threads);
+    for_rows(
+        coarser.load.size(),
+        [&](std::size_t a) {
+            const auto entries = level.restriction.of(a);
+            coarser.load[a] = sum_of_terms<Real, lanes, true>(std::ssize(entries), [&](std::int64_t k) {
+                const auto [row, block] = entries[at(k)];
+                return Term<Real, lanes>{&level.prolongation.block[at(block)], &here.step[at(row)]};
+            });
+        },
+        worth_threads);
+    cycle(fields, index + 1);
+    for_rows(
+        level.nodes, [&](std::size_t i) { here.solution[i] += row_of_product(level.prolongation, i, coarser.solution); },
+        worth_threads);
+    smooth(level, here, false);
 }
 
 template <typename Real>
-template <int lanes>
-void BasicMultigrid<Real>::cycle(std::size_t index) {
-    Fields<lanes>& here = fields<lanes>()[index];
-    if (index + 1 == levels_.size()) return solve_coarsest(here);
-    const Level& level = levels_[index];
-    Fields<lanes>& coarser = fields<lanes>()[index + 1];
-    smooth(level, here, true);
-    for_rows(level.nodes, [&](std::size_t i) {
-        here.step[i] = here.load[i] - row_of_product(level.matrix, i, here.solution);
-    }, worth_threads);
-    for_rows(coarser.load.size(), [&](std::size_t a) {
-        const auto entries = level.restriction.of(a);
-        coarser.load[a] = sum_of_terms<Real, lanes, true>(std::ssize(entries), [&](std::int64_t k) {
-            const auto [row, block] = entries[at(k)];
-            return Term<Real, lanes>{&level.prolongation.block[at(block)], &here.step[at(row)]};
-        });
-    }, worth_threads);
-    cycle<lanes>(index + 1);
-    for_rows(level.nodes, [&](std::size_t i) {
-        here.solution[i] += row_of_product(level.prolongation, i, coarser.solution);
-    }, worth_threads);
-    smooth(level, here, false);
+template <int width>
+typename BasicMultigrid<Real>::template AllFields<width>& BasicMultigrid<Real>::fields() {
+    constexpr int lanes = AllFields<width>::lanes;
+    AllFields<width>& all = std::get<AllFields<width>>(fields_);
+    while (all.coarser.size() < levels_.size()) {
+        const std::vector<Values<Real, lanes>> zero(levels_[all.coarser.size()].nodes, Values<Real, lanes>::Zero());
+        all.coarser.push_back({zero, zero, zero});
+    }
+    return all;
 }
 
 /// Fields go to the levels with a norm of one, whatever their unit.
 template <typename Real>
 template <int width>
-void BasicMultigrid<Real>::apply(const Batch<width>& r, Batch<width>& z) {
-    constexpr int lanes = width == 1 ? 1 : six;
-    std::vector<Fields<lanes>>& all = fields<lanes>();
-    while (all.size() < levels_.size()) {
-        const std::size_t nodes = levels_[all.size()].nodes;
-        const std::vector<Values<Real, lanes>> zero(nodes, Values<Real, lanes>::Zero());
-        all.push_back({zero, zero, zero});
-    }
-    const PerField<width> size = norms<width>(r);
-    const PerField<width> inwards = (size > 0.0).select(size.inverse(), 0.0), outwards = scale_ * size;
-    std::vector<Values<Real, lanes>>&load = all.front().load, &solution = all.front().solution;
-    z.resize(r.size());
-    for_rows(r.size(), [&](std::size_t i) {
-        load[i].template leftCols<width>() = (r[i] * inwards.matrix().asDiagonal()).template cast<Real>();
-    }, worth_threads);
-    cycle<lanes>(0);
-    for_rows(r.size(), [&](std::size_t i) {
-        z[i] = solution[i].template leftCols<width>().template cast<double>() * outwards.matrix().asDiagonal();
-    }, worth_threads);
+typename BasicMultigrid<Real>::template Response<width> BasicMultigrid<Real>::apply(const Batch<width>& r,
+                                                                                    const PerField<width>& size) {
+    AllFields<width>& all = fields<width>();
+    const PerField<width> inwards = (size > 0.0).select(size.inverse(), 0.0);
+    for (auto* field : {&all.finest.load, &all.finest.solution, &all.finest.step, &all.finest.next}) field->resize(r.size());
+    for_rows(
+        r.size(),
+        [&](std::size_t i) {
+            all.finest.load[i] = motion_of<Real, width>(Values<double, width>(r[i] * inwards.matrix().asDiagonal()));
+        },
+        worth_threads);
+    cycle<width>(all);
+    return {all.finest.solution, scale_ * size};
 }
 
 template class BasicMultigrid<float>;
-template void BasicMultigrid<float>::apply(const Batch<1>&, Batch<1>&);
-template void BasicMultigrid<float>::apply(const Batch<6>&, Batch<6>&);
+template BasicMultigrid<float>::Response<1> BasicMultigrid<float>::apply(const Batch<1>&, const PerField<1>&);
+template BasicMultigrid<float>::Response<3> BasicMultigrid<float>::apply(const Batch<3>&, const PerField<3>&);
 template class BasicMultigrid<double>;  // shows what is the method's and what is rounding
-template void BasicMultigrid<double>::apply(const Batch<1>&, Batch<1>&);
-template void BasicMultigrid<double>::apply(const Batch<6>&, Batch<6>&);
+template BasicMultigrid<double>::Response<1> BasicMultigrid<double>::apply(const Batch<1>&, const PerField<1>&);
+template BasicMultigrid<double>::Response<3> BasicMultigrid<double>::apply(const Batch<3>&, const PerField<3>&);
 
 }  // namespace kiln::linalg

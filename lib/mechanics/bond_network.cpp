@@ -193,47 +193,25 @@ BondBlocks bond_blocks(const BondNetwork& network, std::size_t bond) {
     return blocks;
 }
 
-BlockMatrix stiffness_matrix(const BondNetwork& network) {
-    const Grouping<std::int32_t> incidence = find_incidence(network.nodes(), network.pair);
-    const auto other_end = [&](std::size_t bond, std::int32_t node) {
-        return network.pair[bond][0] == node ? network.pair[bond][1] : network.pair[bond][0];
-    };
-    const auto nodes = static_cast<std::int32_t>(network.nodes());
-    BlockMatrix matrix;
-    matrix.columns = nodes;
-    for (std::int32_t node = 0; node < nodes; ++node) {
-        const auto begin = static_cast<std::ptrdiff_t>(matrix.column.size());
-        matrix.column.push_back(node);
-        for (const std::int32_t bond : incidence.of(at(node))) {
-            matrix.column.push_back(other_end(at(bond), node));
-        }
-        std::sort(matrix.column.begin() + begin, matrix.column.end());
-        matrix.column.erase(std::unique(matrix.column.begin() + begin, matrix.column.end()), matrix.column.end());
-        matrix.start.push_back(static_cast<std::int64_t>(matrix.column.size()));
-    }
-    matrix.block.assign(matrix.column.size(), Mat6::Zero());
-    for_rows(network.nodes(), [&](std::size_t index) {
-        const auto node = static_cast<std::int32_t>(index);
-        const auto begin = matrix.column.begin() + matrix.first(node), end = matrix.column.begin() + matrix.last(node);
-        const auto block_at = [&](std::int32_t column) -> Mat6& {
-            return matrix.block[at(std::lower_bound(begin, end, column) - matrix.column.begin())];
-        };
-        for (const std::int32_t row : incidence.of(at(node))) {
-            const auto bond = at(row);
-            const auto [i, j] = network.pair[bond];
-            const BondBlocks blocks = bond_blocks(network, bond);
-            if (i == j) {
-                block_at(node) += blocks.ii + blocks.jj + blocks.ij + blocks.ij.transpose();
-            } else if (node == i) {
-                block_at(node) += blocks.ii;
-                block_at(j) += blocks.ij;
-            } else {
-                block_at(node) += blocks.jj;
-                block_at(i) += blocks.ij.transpose();
-            }
-        }
-    }, worth_threads);
-    return matrix;
+std::vector<linalg::Spring<double>> springs_of(const BondNetwork& network) {
+    std::vector<linalg::Spring<double>> springs(network.bonds());
+    for_rows(
+        springs.size(),
+        [&](std::size_t bond) {
+            const physics::BondStiffness& k = network.stiffness[bond];
+            const double length = network.rotation_length;
+            const Vec3 arm = network.vector[bond] / (2.0 * length);
+            const double square = arm.squaredNorm();
+            springs[bond] = {network.pair[bond][0],
+                             network.pair[bond][1],
+                             {arm[0], arm[1], arm[2]},
+                             k.shear,
+                             (k.normal - k.shear) / square,
+                             k.bending / (length * length),
+                             (k.torsion - k.bending) / (length * length * square)};
+        },
+        worth_threads);
+    return springs;
 }
 
 std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement, const Mat3& strain) {

@@ -1,4 +1,4 @@
-// bond_network.h: a piece of bonded particles as a network of springs, its stiffness matrix and the forces in its bonds.
+// bond_network.h: a piece of bonded particles as a network of springs, its stiffness and the forces in its bonds.
 #pragma once
 
 #include <array>
@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "core/state.h"
-#include "linalg/block_matrix.h"
+#include "linalg/springs.h"
 #include "physics/bond_law.h"
 #include "physics/bond_stress.h"
 
 namespace kiln::mechanics {
 
-using linalg::BlockMatrix, linalg::Mat6, linalg::Vec6, linalg::Vector, linalg::worth_threads;
+using linalg::Mat6, linalg::Vec6, linalg::Vector, linalg::worth_threads;
 
 /// Nodes with six freedoms each: displacement (m) and rotation (rad) times rotation_length (m).
 struct BondNetwork {
@@ -82,9 +82,9 @@ struct BondBlocks {
 
 BondBlocks bond_blocks(const BondNetwork& network, std::size_t bond);
 
-/// Symmetric matrix, N/m, positive semidefinite: zero energy for rigid motions of a free network and for translations of a periodic
-/// one.
-BlockMatrix stiffness_matrix(const BondNetwork& network);
+/// The same for products: a symmetric matrix, positive semidefinite, with zero energy for rigid motions of a free network and for
+/// translations of a periodic one.
+std::vector<linalg::Spring<double>> springs_of(const BondNetwork& network);
 
 /// What a bond does to its second node is the opposite of `force`: tension pulls the first node along +vector.
 struct BondLoad {

@@ -11,6 +11,8 @@ namespace {
 /// Two nodes a bond: a sum of such matrices is at most twice its block diagonal.
 constexpr double max_eigenvalue_of_bonds = 2.0;
 
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
 std::size_t middle_node(const BondNetwork& network) {
     Vec3 centre = Vec3::Zero();
     for (const Vec3& position : network.position) centre += position;
@@ -31,16 +33,17 @@ linalg::NodeGeometry geometry_of(const BondNetwork& network) {
 }  // namespace
 
 ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequest stop, const LinearSolverMaker& other)
-    : stop_(std::move(stop)), matrix_(stiffness_matrix(network)), grounded_(middle_node(network)) {
-    const auto row = static_cast<std::int32_t>(grounded_);
-    for (std::int64_t k = matrix_.first(row); k < matrix_.last(row); ++k) {
-        if (matrix_.column[static_cast<std::size_t>(k)] != row) continue;
-        Mat6& block = matrix_.block[static_cast<std::size_t>(k)];
-        const double mean = block.trace() / 6.0;
-        ground_.head<3>().setConstant(mean);
-        if (ground == Ground::displacement_and_rotation) ground_.tail<3>().setConstant(mean);
-        block.diagonal() += ground_;
+    : stop_(std::move(stop)), matrix_(network.nodes(), springs_of(network)), grounded_(middle_node(network)) {
+    Mat6 block = Mat6::Zero();
+    for (std::size_t bond = 0; bond < network.bonds(); ++bond) {
+        const auto [i, j] = network.pair[bond];
+        if (at(i) == grounded_) block += bond_blocks(network, bond).ii;
+        if (at(j) == grounded_) block += bond_blocks(network, bond).jj;
     }
+    const double mean = block.trace() / 6.0;
+    ground_.head<3>().setConstant(mean);
+    if (ground == Ground::displacement_and_rotation) ground_.tail<3>().setConstant(mean);
+    matrix_.hold(grounded_, ground_);
     if (other)
         other_ = other(network, {grounded_, ground_}, stop_);
     else
@@ -48,45 +51,33 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequ
 }
 
 Residual ElasticSolver::residual() const {
-    return [this](const Vector& x, const Vector& b, Vector& r) { linalg::residual<1>(matrix_, x, b, r); };
+    return [this](const Vector& x, const Vector& b, Vector& r) {
+        linalg::residual(matrix_, linalg::Columns<1, 1>{x}, linalg::Columns<1, 1>{b}, r);
+    };
 }
 
 linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
     if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
-    const auto precondition = [this](const Vector& r, Vector& z) {
-        throw_if_stopped(stop_);
-        preconditioner_->apply<1>(r, z);
-    };
-    return linalg::solve_blocks<1>(matrix_, precondition, load, x, tolerance, max_iterations)[0];
+    return linalg::solve_springs<1>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_)[0];
 }
 
 std::array<linalg::SolveReport, 6> ElasticSolver::solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
                                                         int max_iterations) {
     if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
-    const auto precondition = [this](const linalg::Batch<6>& r, linalg::Batch<6>& z) {
-        throw_if_stopped(stop_);
-        preconditioner_->apply<6>(r, z);
-    };
-    return linalg::solve_blocks<6>(matrix_, precondition, load, x, tolerance, max_iterations);
+    std::array<linalg::SolveReport, 6> reports;
+    for (const int first : {0, 3})
+        std::ranges::copy(linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, first, tolerance, max_iterations, stop_),
+                          reports.begin() + first);
+    return reports;
 }
 
 void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double share) {
     if (other_) other_->soften(network, bond, share);
-    const auto [i, j] = network.pair[bond];
-    const BondBlocks blocks = bond_blocks(network, bond);
-    const auto block_at = [&](std::int32_t row, std::int32_t column) -> Mat6& {
-        const auto begin = matrix_.column.begin() + matrix_.first(row), end = matrix_.column.begin() + matrix_.last(row);
-        return matrix_.block[static_cast<std::size_t>(std::lower_bound(begin, end, column) - matrix_.column.begin())];
-    };
-    const double lost = 1.0 - share;
-    block_at(i, i) -= lost * blocks.ii;
-    block_at(j, j) -= lost * blocks.jj;
-    block_at(i, j) -= lost * blocks.ij;
-    block_at(j, i) -= lost * blocks.ij.transpose();
+    matrix_.soften(bond, share);
 }
 
 void ElasticSolver::forces(const Vector& displacement, Vector& force) const {
-    linalg::multiply<1>(matrix_, displacement, force);
+    linalg::multiply(matrix_, displacement, force);
     force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
 }
 

@@ -27,10 +27,10 @@ class ElasticSolver {
     ElasticSolver(const ElasticSolver&) = delete;  // as large as the network
     ElasticSolver& operator=(const ElasticSolver&) = delete;
 
-    /// Displacements under a load in equilibrium; x is where the search starts. See linalg::solve_blocks for the result.
+    /// Displacements under a load in equilibrium; x is where the search starts. See linalg::solve_springs for the result.
     linalg::SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
 
-    /// The same of six loads at once: matrix and preconditioner are read once for all.
+    /// The same of six loads, three at once: matrix and preconditioner are read once for them.
     std::array<linalg::SolveReport, 6> solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
                                              int max_iterations = 1000);
 
@@ -48,7 +48,7 @@ class ElasticSolver {
     Residual residual() const;
 
     StopRequest stop_;
-    BlockMatrix matrix_;  // with the ground springs
+    linalg::Springs<double> matrix_;  // with the ground springs
     std::size_t grounded_ = 0;
     Vec6 ground_ = Vec6::Zero();
     std::unique_ptr<linalg::Multigrid> preconditioner_;

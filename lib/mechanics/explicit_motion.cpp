@@ -48,7 +48,7 @@ ExplicitMotion::ExplicitMotion(const BondNetwork& network, std::vector<ElasticSp
 }
 
 void ExplicitMotion::choose_time_step(const std::vector<WallContact>& walls, double max_force) {
-    const BlockMatrix matrix = stiffness_matrix(network_);
+    const std::vector<Mat6> blocks = linalg::diagonal_blocks({network_.nodes(), springs_of(network_)});
     std::vector<double> contact(network_.nodes(), 0.0);  // N/m, of the stiffest contact that a node may have
     const auto note = [&](std::int32_t node, double modulus, double radius) {
         const double overlap = physics::hertz_overlap(modulus, radius, max_force);
@@ -56,16 +56,12 @@ void ExplicitMotion::choose_time_step(const std::vector<WallContact>& walls, dou
     };
     for (const WallContact& wall : walls) note(wall.node, wall.modulus, wall.radius);
     double largest = 0.0;
-    for (std::int32_t node = 0; node < matrix.rows(); ++node) {
-        const Vec6 root = inverse_mass_[at(node)].cwiseSqrt();
-        for (std::int64_t k = matrix.first(node); k < matrix.last(node); ++k) {
-            if (matrix.column[at(k)] != node) continue;
-            Mat6 block = matrix.block[at(k)];
-            block.diagonal().head<3>().array() += contact[at(node)];
-            const Mat6 scaled = root.asDiagonal() * block * root.asDiagonal();
-            largest =
-                std::max(largest, Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
-        }
+    for (std::size_t node = 0; node < blocks.size(); ++node) {
+        const Vec6 root = inverse_mass_[node].cwiseSqrt();
+        Mat6 block = blocks[node];
+        block.diagonal().head<3>().array() += contact[node];
+        const Mat6 scaled = root.asDiagonal() * block * root.asDiagonal();
+        largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
     }
     time_step_ = step_share * 2.0 / std::sqrt(2.0 * largest);
 }

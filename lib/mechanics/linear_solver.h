@@ -37,7 +37,7 @@ using LinearSolverMaker =
 /// r = b - A x.
 using Residual = std::function<void(const Vector& x, const Vector& b, Vector& r)>;
 
-/// Improves x until the norm of the residual is at most `tolerance` times that of the load, as linalg::solve_blocks does: what the
+/// Improves x until the norm of the residual is at most `tolerance` times that of the load, as linalg::solve_springs does: what the
 /// solver leaves is solved for again. An empty x is zero. Throws Error where a number is not finite.
 linalg::SolveReport solve_with(LinearSolver& solver, const Residual& residual, const Vector& load, Vector& x, double tolerance,
                                int max_iterations);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/physics/assembled.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 
@@ -42,7 +43,7 @@ double max_displacement(const Vector& displacement) {
 /// J, by the matrix of the network.
 double energy_in_bonds(const BondNetwork& network, const Vector& displacement) {
     Vector force;
-    linalg::multiply(stiffness_matrix(network), displacement, force);
+    linalg::multiply(test::stiffness_matrix(network), displacement, force);
     return 0.5 * linalg::dot(displacement, force);
 }
 

@@ -7,6 +7,7 @@
 
 #include "mechanics/elastic_solver.h"
 #include "mechanics/elastic_tensor.h"
+#include "tests/physics/assembled.h"
 #include "tests/physics/bonded_lattice.h"
 #include "tests/physics/relative.h"
 
@@ -21,7 +22,7 @@ namespace {
 class Partial : public LinearSolver {
    public:
     Partial(const BondNetwork& network, const GroundSprings& ground, double share) : share_(share) {
-        const BlockMatrix matrix = stiffness_matrix(network);
+        const BlockMatrix matrix = test::stiffness_matrix(network);
         matrix_ = Eigen::MatrixXd::Zero(6 * matrix.rows(), 6 * matrix.rows());
         for (std::int32_t row = 0; row < matrix.rows(); ++row)
             for (std::int64_t k = matrix.first(row); k < matrix.last(row); ++k)

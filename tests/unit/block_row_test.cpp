@@ -1,4 +1,4 @@
-// block_row_test.cpp: vectors of whatever size add the same products in the same order.
+// block_row_test.cpp: rows of blocks times one field or several.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -41,9 +41,9 @@ void check_row(double tolerance) {
 
 }  // namespace
 
-TEST_CASE("a row of blocks times one field or several, also transposed; the widest vectors of this processor give the same bytes") {
+TEST_CASE("a row of blocks times one field or several, also transposed") {
     check_row<float, 1>(1e-5);
-    check_row<float, 8>(1e-5);
+    check_row<float, 4>(1e-5);
     check_row<double, 1>(1e-13);
-    check_row<double, 6>(1e-13);
+    check_row<double, 4>(1e-13);
 }

@@ -1,0 +1,133 @@
+// springs.cpp: springs sorted into chunks of nodes, and products with them.
+#include "linalg/springs.h"
+
+#include <Eigen/Geometry>
+
+#include "core/grouping.h"
+#include "core/parallel.h"
+
+namespace kiln::linalg {
+
+namespace {
+
+using Mat3 = Eigen::Matrix3d;
+
+/// The same spring with its nodes in ascending order.
+template <typename Real>
+Spring<Real> ascending(const Spring<Real>& spring) {
+    if (spring.first <= spring.second) return spring;
+    return {spring.second, spring.first, {-spring.arm[0], -spring.arm[1], -spring.arm[2]}, spring.shear, spring.axial,
+            spring.bending, spring.twisting};
+}
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+}  // namespace
+
+SpringBlocks blocks_of(const Spring<double>& spring) {
+    const Eigen::Map<const Vec3> arm(spring.arm);
+    const Mat3 along = arm * arm.transpose();
+    const Mat3 C = spring.shear * Mat3::Identity() + spring.axial * along;
+    const Mat3 rotation = spring.bending * Mat3::Identity() + spring.twisting * along;
+    Mat3 S;
+    S << 0.0, -arm[2], arm[1], arm[2], 0.0, -arm[0], -arm[1], arm[0], 0.0;
+    const Mat3 CS = C * S, SCS = S.transpose() * CS;
+    SpringBlocks blocks;
+    blocks.ii << C, -CS, -CS.transpose(), SCS + rotation;
+    blocks.jj << C, CS, CS.transpose(), SCS + rotation;
+    blocks.ij << -C, -CS, CS.transpose(), SCS - rotation;
+    return blocks;
+}
+
+template <typename Real>
+Springs<Real>::Springs(std::size_t nodes, const std::vector<Spring<Real>>& springs)
+    : nodes_(nodes), springs_(springs.size()), place_(springs.size()) {
+    const std::size_t count = (nodes + nodes_in_chunk - 1) / nodes_in_chunk;
+    const auto chunk_of = [](std::int32_t node) { return at(node) / nodes_in_chunk; };
+    const Grouping<std::uint32_t> by_first = group_by<std::uint32_t>(nodes, [&](const auto& visit) {
+        for (std::size_t row = 0; row < springs.size(); ++row)
+            visit(at(std::min(springs[row].first, springs[row].second)), static_cast<std::uint32_t>(row));
+    });
+    for (std::size_t k = 0; k < springs.size(); ++k) {
+        springs_[k] = ascending(springs[by_first.items[k]]);
+        place_[by_first.items[k]] = static_cast<std::uint32_t>(k);
+    }
+    Grouping<std::uint32_t> incoming = group_by<std::uint32_t>(count, [&](const auto& visit) {
+        for (std::size_t k = 0; k < springs_.size(); ++k)
+            if (chunk_of(springs_[k].first) != chunk_of(springs_[k].second))
+                visit(chunk_of(springs_[k].second), static_cast<std::uint32_t>(k));
+    });
+    for (std::size_t chunk = 0; chunk < count; ++chunk) {
+        const std::size_t first = chunk * nodes_in_chunk, last = std::min(nodes, first + nodes_in_chunk);
+        chunks_.push_back(
+            {first, last, by_first.begin[first], by_first.begin[last], incoming.begin[chunk], incoming.begin[chunk + 1]});
+    }
+    incoming_ = std::move(incoming.items);
+}
+
+template <typename Real>
+template <typename Other>
+Springs<Real>::Springs(const Springs<Other>& other, double factor)
+    : nodes_(other.nodes_), springs_(other.springs_.size()), incoming_(other.incoming_), held_(other.held_) {
+    for (const auto& c : other.chunks_)
+        chunks_.push_back({c.first_node, c.last_node, c.first_spring, c.last_spring, c.first_incoming, c.last_incoming});
+    for_rows(springs_.size(), [&](std::size_t k) {
+        const Spring<Other>& from = other.springs_[k];
+        const auto arm = [&](int axis) { return static_cast<Real>(from.arm[axis]); };
+        const auto scaled = [&](Other stiffness) { return static_cast<Real>(factor * static_cast<double>(stiffness)); };
+        springs_[k] = {from.first,          from.second,        {arm(0), arm(1), arm(2)},
+                       scaled(from.shear), scaled(from.axial), scaled(from.bending), scaled(from.twisting)};
+    });
+    for (auto& [node, stiffness] : held_) stiffness *= factor;
+}
+
+template <typename Real>
+void Springs<Real>::soften(std::size_t row, double share) {
+    Spring<Real>& spring = springs_[place_[row]];
+    for (Real* stiffness : {&spring.shear, &spring.axial, &spring.bending, &spring.twisting})
+        *stiffness = static_cast<Real>(share * static_cast<double>(*stiffness));
+}
+
+template class Springs<float>;
+template class Springs<double>;
+template Springs<float>::Springs(const Springs<double>&, double);
+template Springs<double>::Springs(const Springs<double>&, double);
+
+void multiply(const Springs<double>& matrix, const Vector& x, Vector& y) {
+    y.resize(matrix.nodes());
+    for_chunks(matrix.chunks(), [&](std::size_t chunk) {
+        matrix.for_forces<1>(chunk, Columns<1, 1>{x},
+                             [&](std::size_t node, const Freedoms<double, 1>& force) { y[node] = values_of(force); });
+    });
+}
+
+template <int width, int all>
+void residual(const Springs<double>& matrix, const Columns<width, all>& x, const Columns<width, all>& b, Batch<width>& r) {
+    r.resize(matrix.nodes());
+    for_chunks(matrix.chunks(), [&](std::size_t chunk) {
+        matrix.for_forces<width>(chunk, x, [&](std::size_t node, const Freedoms<double, width>& force) {
+            r[node] = b.batch[node].template middleCols<width>(b.first) - values_of(force);
+        });
+    });
+}
+
+template void residual(const Springs<double>&, const Columns<1, 1>&, const Columns<1, 1>&, Batch<1>&);
+template void residual(const Springs<double>&, const Columns<3, 6>&, const Columns<3, 6>&, Batch<3>&);
+
+std::vector<Mat6> diagonal_blocks(const Springs<double>& matrix) {
+    std::vector<Mat6> diagonal(matrix.nodes(), Mat6::Zero());
+    for_chunks(matrix.chunks(), [&](std::size_t chunk) {
+        const auto [first, last] = matrix.nodes_of(chunk);
+        const auto own = [&](std::int32_t node) { return at(node) >= first && at(node) < last; };
+        matrix.for_springs(chunk, [&](const Spring<double>& spring) {
+            const SpringBlocks blocks = blocks_of(spring);
+            if (own(spring.first)) diagonal[at(spring.first)] += blocks.ii;
+            if (own(spring.second)) diagonal[at(spring.second)] += blocks.jj;
+            if (spring.first == spring.second) diagonal[at(spring.first)] += blocks.ij + blocks.ij.transpose();
+        });
+    });
+    for (const auto& [node, stiffness] : matrix.held()) diagonal[node].diagonal() += stiffness;
+    return diagonal;
+}
+
+}  // namespace kiln::linalg
