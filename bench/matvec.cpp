@@ -1,5 +1,5 @@
-// matvec.cpp: memory traffic of the product of a contact network's stiffness with a vector, and of its preconditioner, beside that
-// of a triad a = b + s c in the same run. JSON lines; argument: number of particles along an edge (default 60: 216,000).
+// matvec.cpp: memory traffic of an iteration of conjugate gradients on a contact network, beside that of a triad a = b + s c in the
+// same run. JSON lines; argument: number of particles along an edge (default 60: 216,000).
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "io/json.h"
-#include "sintering/preconditioner.h"
+#include "sintering/tangent_solver.h"
 
 namespace {
 
@@ -72,33 +72,27 @@ int main(int argc, char** argv) {
     const std::vector<Vec3> position = packing(edge, box);
     const std::vector<Pair> pairs = find_pairs(box, position, std::vector<double>(position.size(), 0.76));
     const sintering::ContactNetwork network(box, position, pairs);
-    sintering::Stiffness<float> stiffness(network);
-    std::vector<Vec3> levers;
-    for (const Pair& pair : pairs) levers.push_back(pair_vector(box, position, pair));
+    sintering::TangentSolver<float> solver(box, network, pairs);
+    std::vector<Vec3> branches;
+    for (const Pair& pair : pairs) branches.push_back(pair_vector(box, position, pair));
     for (std::size_t entry = 0; entry < network.pair.size(); ++entry) {
-        const Vec3 normal = levers[static_cast<std::size_t>(network.pair[entry])].normalized();
-        stiffness.set_direction(entry, normal);
-        stiffness.set(entry, 1.0, 0.1);
+        solver.springs().set_direction(entry, branches[static_cast<std::size_t>(network.pair[entry])].normalized());
+        solver.springs().set(entry, 1.0, 0.1);
     }
-    sintering::QuadMotion<float> in(position.size()), out(position.size());
-    for (std::size_t row = 0; row < position.size(); ++row)
-        in.displacement[row] = linalg::quad<float>(static_cast<double>(row % 17), static_cast<double>(row % 5), 1.0);
-    std::vector<linalg::Quad<float>> total(position.size());
+    solver.factorise(branches);
+    sintering::Motion force(position.size()), motion(position.size());
+    for (std::size_t k = 0; k < force.displacement.size(); ++k) force.displacement[k] = static_cast<double>(k % 17) - 8.0;
     const auto particles = static_cast<double>(position.size()), entries = static_cast<double>(network.first.size());
 
     triad(static_cast<std::size_t>(particles) * 32);
-    // An entry is 28 bytes; a particle's displacement, position, force and total come once each, and the total is written
-    // before: 5 x 16.
-    say("matvec", 28.0 * entries + 80.0 * particles, best_seconds([&] {
-            network.for_chunks([&](std::size_t chunk) { stiffness.displace(chunk, in, total); });
-            network.for_chunks([&](std::size_t chunk) { stiffness.multiply(chunk, in.strain, total, out); });
-        }));
-    sintering::Preconditioner<float> preconditioner(box, network, pairs);
-    preconditioner.factorise(stiffness, levers);
-    // Twice a block of 36 bytes and its column for each contact inside a chunk; 36 bytes of the diagonal, residual and result.
+    // A contact inside a chunk comes twice with 20 bytes and the index of a particle, another once with two; a particle with the
+    // diagonal block and its forces against strains, 32 and 48 bytes, three times with the inverse, 32, and vectors of 16.
     double inside = 0.0;
     for (const auto& chunk : network.chunks()) inside += static_cast<double>(chunk.first_only - chunk.begin);
-    say("preconditioner", 80.0 * inside + 132.0 * particles, best_seconds([&] {
-            network.for_chunks([&](std::size_t chunk) { preconditioner.apply(chunk, in, out); });
-        }));
+    constexpr int iterations = 20;
+    const double seconds = best_seconds([&] {
+        solver.solve(Eigen::Matrix3d::Identity(), force, motion,
+                     [](const linalg::CgProgress& progress) { return progress.iterations == iterations; });
+    });
+    say("iteration", 48.0 * inside + 28.0 * (entries - inside) + 416.0 * particles, seconds / iterations);
 }

@@ -71,15 +71,10 @@ Quad<Real> sum(Quad<Real> a) {
     return a;
 }
 
-/// Scalar products of three vectors with v, in x, y and z.
-template <typename Real>
-Quad<Real> transposed_product(Quad<Real> a, Quad<Real> b, Quad<Real> c, Quad<Real> v) {
-    using Lanes = typename Quad<Real>::Lanes;
-    const Lanes low = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 1, 5),
-                high = __builtin_shufflevector(a.lanes, b.lanes, 2, 6, 3, 7);
-    const Quad<Real> x{__builtin_shufflevector(low, c.lanes, 0, 1, 4, 7)}, y{__builtin_shufflevector(low, c.lanes, 2, 3, 5, 7)};
-    const Quad<Real> z{__builtin_shufflevector(high, c.lanes, 0, 1, 6, 7)};
-    return x * all<0>(v) + y * all<1>(v) + z * all<2>(v);
+/// x, y and z in another order, the spare place as it is.
+template <int x, int y, int z, typename Real>
+Quad<Real> in_order(Quad<Real> a) {
+    return {__builtin_shufflevector(a.lanes, a.lanes, x, y, z, 3)};
 }
 
 /// x, y, z with nothing in the spare place.
@@ -87,6 +82,29 @@ template <typename Real>
 Quad<Real> only_vector(Quad<Real> a) {
     return {__builtin_shufflevector(a.lanes, typename Quad<Real>::Lanes{}, 0, 1, 2, 7)};
 }
+
+/// A symmetric 3x3 block; spare places are zero.
+template <typename Real>
+struct SymmetricBlock {
+    Quad<Real> diagonal, off;  // xx, yy, zz; yz, zx, xy
+
+    SymmetricBlock() = default;
+    template <typename Matrix>
+    explicit SymmetricBlock(const Matrix& m)
+        : diagonal(quad<Real>(m(0, 0), m(1, 1), m(2, 2))), off(quad<Real>(m(2, 1), m(2, 0), m(1, 0))) {}
+
+    Eigen::Matrix3d matrix() const {
+        Eigen::Matrix3d m = vector(diagonal).asDiagonal();
+        m(1, 2) = m(2, 1) = static_cast<double>(off.lanes[0]);
+        m(0, 2) = m(2, 0) = static_cast<double>(off.lanes[1]);
+        m(0, 1) = m(1, 0) = static_cast<double>(off.lanes[2]);
+        return m;
+    }
+
+    friend Quad<Real> operator*(const SymmetricBlock& m, Quad<Real> v) {
+        return m.diagonal * v + in_order<2, 0, 1>(m.off) * in_order<1, 2, 0>(v) + in_order<1, 2, 0>(m.off) * in_order<2, 0, 1>(v);
+    }
+};
 
 /// sums += a * b, place by place.
 template <typename Real>

@@ -77,16 +77,18 @@ class ConductionSystem {
         : network_(network),
           incidence_(find_incidence(network.nodes, network.pair)),
           ranges_(list_edges()),
-          factor_(network.nodes, ranges_, first_, second_),
+          springs_(first_.size()),
+          factor_(network.nodes, ranges_, first_, second_, springs_),
           x_(network.nodes),
           r_(network.nodes),
           z_(network.nodes),
           p_(network.nodes),
           q_(network.nodes) {
-        for_chunks(ranges_.size(), [&](std::size_t range) {
-            factor_.factorise(ranges_[range],
-                              [&](std::size_t edge) -> Mat3 { return network_.conductance[bond_[edge]] * Mat3::Identity(); });
-        });
+        for (std::size_t edge = 0; edge < first_.size(); ++edge) {  // the same to each of the three fields
+            const double conductance = network_.conductance[bond_[edge]];
+            springs_.set(edge, conductance, conductance);
+        }
+        for_chunks(ranges_.size(), [&](std::size_t range) { factor_.factorise(ranges_[range]); });
         double squares = 0.0;
         for (std::size_t bond = 0; bond < network.pair.size(); ++bond)
             squares += network.vector[bond].squaredNorm() * network.conductance[bond] * network.conductance[bond];
@@ -211,6 +213,7 @@ class ConductionSystem {
     std::vector<std::int32_t> first_, second_;
     std::vector<std::size_t> bond_;
     std::vector<linalg::NodeRange> ranges_;
+    linalg::EdgeStiffness<double> springs_;
     linalg::IncompleteCholesky<double> factor_;
     Field x_, r_, z_, p_, q_;
     double size_ = 0.0, driving_ = 0.0;

@@ -7,8 +7,6 @@ namespace kiln::sintering {
 
 namespace {
 
-constexpr std::size_t chunk_particles = 2048;  // fixed, so that sums do not depend on the number of threads
-
 enum Kind : std::size_t { both_own, first_own, second_own, through_face };
 
 bool is_shifted(const Image& image) { return image[0] != 0 || image[1] != 0 || image[2] != 0; }

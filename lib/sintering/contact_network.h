@@ -26,6 +26,8 @@ struct Motion {
 
 class ContactNetwork {
    public:
+    static constexpr std::size_t chunk_particles = 2048;  // fixed, so that sums do not depend on the number of threads
+
     /// Entries of one chunk: [begin, first_only) join two own particles, [first_only, second_only) have only i in the chunk,
     /// [second_only, crossing) only j, [crossing, end) run through a face of the box, with their shift at shift_begin onwards.
     struct Chunk {
@@ -46,8 +48,10 @@ class ContactNetwork {
     void for_chunks(const Work& work) const { kiln::for_chunks(chunks_.size(), work, min_parallel_chunks); }
 
     /// Sum of value(chunk number) over the chunks, in their order.
-    template <typename Value>
-    double sum_chunks(const Value& value) const { return kiln::sum_chunks(chunks_.size(), 0.0, value, min_parallel_chunks); }
+    template <typename Sum = double, typename Value>
+    Sum sum_chunks(const Sum& zero, const Value& value) const {
+        return kiln::sum_chunks(chunks_.size(), zero, value, min_parallel_chunks);
+    }
 
     /// forces = sum over contacts of force(entry, du): added to particle j, taken from i; forces.strain = sum of force * l.
     /// du is the relative motion of the contact. total is scratch space of 3N.

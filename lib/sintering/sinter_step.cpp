@@ -22,9 +22,8 @@ constexpr double max_linear = 0.1;         // error of the linear solves, looses
 constexpr double min_linear = 1e-3;
 constexpr double surprise = 4.0;   // error over what the iteration before foretold, from which linear solves are held to have ended
 constexpr double closer = 0.1;     // too early: the next ones go closer by this factor
-constexpr int max_factorisations = 2;      // in one minimisation; later the tangents hardly change
 constexpr double linear_fraction = 0.5;    // of the tolerance, that is left to linear solves
-constexpr double imbalance_factor = 30.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
+constexpr double imbalance_factor = 10.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
 constexpr double min_single = 1e-3;        // a tenth of it is typical; within these bounds
 constexpr double max_single = 0.5;
 constexpr double sharpening = 0.1;         // of what linear solves may leave, where that still unbalances a particle
@@ -51,12 +50,20 @@ double pair_resistance(double cubic, double overlap, double approach) {
     return cubic * physics::mean_viscosity_shape(start, reached) * change;
 }
 
-/// Of each pair, zero for one that does not touch yet: it ties nothing.
-std::vector<double> slowness_of(std::span<const PairStep> step) {
+double slowest_of(std::span<const PairStep> step) {
+    double slowest = 0.0;
+    for (const PairStep& pair : step) slowest = std::max(slowest, pair.slowness);
+    return slowest;
+}
+
+/// Coarse spaces of the pairs that touch; one that does not touch yet ties nothing.
+std::vector<RigidClusters> coarse_spaces_of(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs,
+                                            std::span<const PairStep> step) {
+    if (slowest_of(step) < coarse_contrast) return {};
     std::vector<double> slowness;
     slowness.reserve(step.size());
     for (const PairStep& pair : step) slowness.push_back(pair.overlap >= 0.0 ? pair.slowness : 0.0);
-    return slowness;
+    return coarse_spaces(box, position, pairs, slowness, coarse_contrast);
 }
 
 /// Overlap at the end of the step of a pair that nothing else holds, under its fraction of the driving force, m.
@@ -74,20 +81,17 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       step_(step),
       settings_(settings),
       network_(box, position, pairs),
-      coarse_(coarse_spaces(box, position, pairs, slowness_of(step), coarse_contrast)),
+      coarse_(coarse_spaces_of(box, position, pairs, step)),
       rows_(pairs.size()),
       entries_(network_.pair.size()),
       total_(3 * position.size()),
       driving_forces_(position.size()),
       unbalanced_(position.size()),
       direction_(position.size()) {
-    branch_.reserve(step.size());
-    double slowest = 0.0;
-    for (const PairStep& pair : step) {
-        branch_.push_back(pair.branch);
-        slowest = std::max(slowest, pair.slowness);
-    }
-    if (slowest <= single_contrast)
+    branch_.resize(step.size());
+    for_rows(step.size(), [&](std::size_t row) { branch_[row] = step[row].branch; });
+    limited_ = std::ranges::any_of(step, [](const PairStep& pair) { return !std::isinf(pair.limit); });
+    if (slowest_of(step) <= single_contrast)
         solver_ = std::make_unique<TangentSolver<float>>(box, network_, pairs, coarse_);
     else
         solver_ = std::make_unique<TangentSolver<double>>(box, network_, pairs, coarse_);
@@ -138,7 +142,7 @@ void SinterStep::take_geometry() {
             const ContactNetwork::Chunk& chunk = network_.chunks()[index];
             for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
                 entries_[entry] = rows_[static_cast<std::size_t>(network_.pair[entry])];
-                solver->stiffness().set_direction(entry, entries_[entry].normal);
+                solver->springs().set_direction(entry, entries_[entry].normal);
             }
         });
     }, solver_);
@@ -149,6 +153,7 @@ void SinterStep::take_geometry() {
 }
 
 void SinterStep::start_limits() {
+    if (!limited_) return;
     double stiffness = 0.0;
     for (const PairForce& pair : rows_)
         stiffness += pair.driving > 0.0 ? pair.cubic * physics::viscosity_shape(pair.isolated_end) : 0.0;
@@ -181,7 +186,7 @@ void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool 
         double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.isolated_end ? least : 0.0);
         if (limit > 0.0) tangent += limits_.tangent(row, -along, pair.driving - resistance);
         else if (limits_.any()) tangent = std::max(tangent, limits_.tangent(row, -along, pair.driving - resistance));
-        solver.stiffness().set(entry, tangent, pair.tangential);
+        solver.springs().set(entry, tangent, pair.tangential);
         return (pair.driving - resistance - limit - pair.tangential * along) * pair.normal +
                pair.tangential * du;
     });
@@ -221,15 +226,15 @@ double SinterStep::imbalance(const Motion& motion) const {
 }
 
 double SinterStep::line_search(double slope, Motion& motion) {
-    double length = 1.0, low = 0.0, low_slope = -slope, high = 1.0, high_slope = dot(network_, unbalanced_, direction_);
+    double length = 1.0, low = 0.0, low_slope = -slope, high = 1.0, high_slope = -dot(network_, unbalanced_, direction_);
     if (high_slope <= overshoot * slope) return length;
     for (int search = 0; search < max_searches; ++search) {  // regula falsi on the slope; a convex function has one zero of it
         const double fraction = std::clamp(-low_slope / (high_slope - low_slope), 0.1, 0.9);
         const double next = low + fraction * (high - low);
-        add(network_, next - length, direction_, motion);
+        add(network_, length - next, direction_, motion);
         length = next;
         forces(motion, false);
-        const double left = dot(network_, unbalanced_, direction_);
+        const double left = -dot(network_, unbalanced_, direction_);
         if (std::abs(left) <= overshoot * slope) break;
         if (left > 0.0) {
             high = length;
@@ -249,10 +254,8 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
     double closeness = 1.0, foretold = HUGE_VAL;
     forces(motion, true);
     for (int iteration = 0; iteration < max_newton; ++iteration) {
-        unbalanced_.strain *= -1.0;
-        for (double& component : unbalanced_.displacement) component = -component;
         const linalg::CgProgress linear = std::visit([&](auto& solver) {
-            if (iteration < max_factorisations) solver->factorise(branch_);
+            solver->factorise(branch_);
             // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are required.
             return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
                 throw_if_stopped(settings_.stop);
@@ -264,11 +267,11 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
         }, solver_);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
-        const double slope = dot(network_, unbalanced_, direction_);  // minus the derivative along the direction
+        const double slope = dot(network_, unbalanced_, direction_);  // derivative along the direction, against which the step goes
         if (!std::isfinite(slope)) throw Error("a step of sintering meets a motion that is not a finite number");
         double error = 0.0, now = 0.0;
         if (slope > 0.0) {
-            add(network_, 1.0, direction_, motion);
+            add(network_, -1.0, direction_, motion);
             forces(motion, false);
             const double length = line_search(slope, motion);
             error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
@@ -276,9 +279,6 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
             if (error > surprise * foretold) closeness *= closer;
             foretold = now;
             if (length < 0.5 && error < rounding) now = 0.0;
-        } else {
-            unbalanced_.strain *= -1.0;
-            for (double& component : unbalanced_.displacement) component = -component;
         }
         if (now >= tolerance) continue;
         if (!balance) return true;
@@ -310,7 +310,8 @@ void SinterStep::remove_drift(Motion& motion) const {
     const std::size_t count = network_.particles();
     Clusters clusters(count);
     for (std::size_t row = 0; row < pairs_.size(); ++row) {
-        if (rows_[row].driving > 0.0 || step_[row].overlap > 0.0 || limits_.holds(row)) clusters.join(pairs_[row].i, pairs_[row].j);
+        const bool held = limits_.any() && limits_.holds(row);
+        if (rows_[row].driving > 0.0 || step_[row].overlap > 0.0 || held) clusters.join(pairs_[row].i, pairs_[row].j);
     }
     std::vector<Vec3> drift(count, Vec3::Zero());
     std::vector<double> members(count, 0.0);

@@ -106,6 +106,7 @@ class SinterStep {
     ContactNetwork network_;
     std::vector<RigidClusters> coarse_;  // of particles that slow contacts tie together
     std::variant<std::unique_ptr<TangentSolver<float>>, std::unique_ptr<TangentSolver<double>>> solver_;
+    bool limited_ = false;  // any pair
     UnilateralConstraints limits_;
     std::vector<PairForce> rows_, entries_;  // of the pairs, and in the order of the network
     std::vector<Vec3> branch_;               // a row a pair, m

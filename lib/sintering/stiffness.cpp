@@ -1,85 +1,85 @@
-// stiffness.cpp: the product of the stiffness with a motion, chunk by chunk.
+// stiffness.cpp: factorisation, strains and couplings of a contact network, chunk by chunk.
 #include "sintering/stiffness.h"
 
 #include <algorithm>
 
 namespace kiln::sintering {
 
+namespace {
+
+constexpr double min_strain_pivot = 1e-12;  // of the trace; below it no contact reaches along an axis
+
+std::vector<linalg::NodeRange> ranges_of(const ContactNetwork& network) {
+    std::vector<linalg::NodeRange> ranges;
+    for (const ContactNetwork::Chunk& chunk : network.chunks())
+        ranges.push_back({chunk.first_particle, chunk.last_particle, chunk.begin, chunk.first_only, chunk.end});
+    return ranges;
+}
+
+}  // namespace
+
 template <typename Real>
 Stiffness<Real>::Stiffness(const ContactNetwork& network)
-    : network_(network), position_(network.particles()), direction_(network.first.size()), tangential_(network.first.size()) {
-    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-    if (network.particles() > 0) low = high = network.position(0);
-    for (std::size_t row = 0; row < network.particles(); ++row) {
-        low = low.cwiseMin(network.position(row));
-        high = high.cwiseMax(network.position(row));
-    }
-    const Vec3 middle = 0.5 * (low + high);
-    for (std::size_t row = 0; row < network.particles(); ++row)
-        position_[row] = linalg::quad<Real>(Vec3(network.position(row) - middle));
-}
+    : network_(network),
+      springs_(network.first.size()),
+      ranges_(ranges_of(network)),
+      factor_(network.particles(), ranges_, network.first, network.second, springs_),
+      strain_forces_(network.particles()) {}
 
 template <typename Real>
-void Stiffness<Real>::displace(std::size_t index, const QuadMotion<Real>& motion, std::vector<Quad<Real>>& total) const {
+void Stiffness<Real>::assemble(std::span<const Vec3> branch) {
+    of_strain_ = network_.sum_chunks<Eigen::Matrix3d>(Eigen::Matrix3d::Zero(), [&](std::size_t chunk) {
+        factor_.factorise(ranges_[chunk]);
+        return find_strain_forces(chunk, branch);
+    });
+    strain_inverse_ = linalg::pivot_inverse(of_strain_, of_strain_, min_strain_pivot);
+}
+
+/// Returns the chunk's part of of_strain().
+template <typename Real>
+Eigen::Matrix3d Stiffness<Real>::find_strain_forces(std::size_t index, std::span<const Vec3> branch) {
     const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-    const Quad<Real> strain = linalg::quad<Real>(motion.strain);
-    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
-        total[row] = motion.displacement[row] + strain * position_[row];
-}
-
-template <typename Real>
-template <bool AddFirst, bool AddSecond>
-void Stiffness<Real>::multiply_range(std::size_t begin, std::size_t end, const Quad<Real>* total, Quad<Real>* forces) const {
-    const auto add = [&](std::size_t entry) {
-        const auto i = static_cast<std::size_t>(network_.first[entry]), j = static_cast<std::size_t>(network_.second[entry]);
-        const Quad<Real> f = force(entry, total[j] - total[i]);
-        if constexpr (AddFirst) forces[i] -= f;
-        if constexpr (AddSecond) forces[j] += f;
-    };
-    // Neighbouring entries add to the same particle, each waiting for the one before: from both halves in turn they wait half as
-    // long.
-    const std::size_t half = (end - begin) / 2;
-    for (std::size_t entry = begin; entry < begin + half; ++entry) {
-        add(entry);
-        add(entry + half);
-    }
-    if (begin + 2 * half < end) add(end - 1);
-}
-
-template <typename Real>
-Vec3 Stiffness<Real>::multiply_crossing(const ContactNetwork::Chunk& chunk, const Vec3& strain, const Quad<Real>* total,
-                                        Quad<Real>* forces) const {
-    Vec3 work = Vec3::Zero();
-    for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
-        const auto i = static_cast<std::size_t>(network_.first[entry]), j = static_cast<std::size_t>(network_.second[entry]);
-        const Vec3& shift = network_.shift(chunk, entry);
-        const Quad<Real> f = force(entry, total[j] - total[i] + linalg::quad<Real>(Vec3(strain.cwiseProduct(shift))));
-        if (network_.owns_first(chunk, entry)) {
-            work += linalg::vector(f).cwiseProduct(shift);
-            forces[i] -= f;
+    std::fill(strain_forces_.begin() + static_cast<std::ptrdiff_t>(chunk.first_particle),
+              strain_forces_.begin() + static_cast<std::ptrdiff_t>(chunk.last_particle), std::array<Quad<Real>, 3>{});
+    std::array<linalg::WideQuad, 3> work;
+    const auto add = [&](std::size_t entry, bool first, bool second) {
+        const Quad<Real> l = linalg::quad<Real>(branch[static_cast<std::size_t>(network_.pair[entry])]);
+        const std::array<Quad<Real>, 3> force = springs_.columns(entry, l);
+        auto& on_first = strain_forces_[static_cast<std::size_t>(network_.first[entry])];
+        auto& on_second = strain_forces_[static_cast<std::size_t>(network_.second[entry])];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (first) on_first[axis] -= force[axis];
+            if (second) on_second[axis] += force[axis];
+            if (first) linalg::add_product(force[axis], l, work[axis]);
         }
-        if (network_.owns_second(chunk, entry)) forces[j] += f;
-    }
-    return work;
+    };
+    for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry) add(entry, true, true);
+    for (std::size_t entry = chunk.first_only; entry < chunk.second_only; ++entry) add(entry, true, false);
+    for (std::size_t entry = chunk.second_only; entry < chunk.crossing; ++entry) add(entry, false, true);
+    for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry)
+        add(entry, network_.owns_first(chunk, entry), network_.owns_second(chunk, entry));
+    Eigen::Matrix3d part;
+    for (int axis = 0; axis < 3; ++axis) part.col(axis) = work[static_cast<std::size_t>(axis)].vector();
+    return 0.5 * (part + part.transpose());
 }
 
 template <typename Real>
-Vec3 Stiffness<Real>::multiply(std::size_t index, const Vec3& strain, const std::vector<Quad<Real>>& total,
-                               QuadMotion<Real>& forces) const {
+void Stiffness<Real>::add_outer(std::size_t index, const std::vector<Quad<Real>>& displacement, Quad<Real>* sums) const {
     const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-    Quad<Real>* target = forces.displacement.data();
-    std::fill(target + chunk.first_particle, target + chunk.last_particle, Quad<Real>{});
-    multiply_range<true, true>(chunk.begin, chunk.first_only, total.data(), target);
-    multiply_range<true, false>(chunk.first_only, chunk.second_only, total.data(), target);
-    multiply_range<false, true>(chunk.second_only, chunk.crossing, total.data(), target);
-    const Vec3 crossing = multiply_crossing(chunk, strain, total.data(), target);
-    // Sum of f * l: with l = x_j + shift - x_i it is the sum of the particles' forces times their positions, and the shifts.
-    linalg::WideQuad work;
-    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
-        target[row] = linalg::only_vector(target[row]);
-        linalg::add_product(target[row], position_[row], work);
+    const auto add = [&](std::size_t entry, std::int32_t own, std::int32_t other) {
+        sums[static_cast<std::size_t>(own) - chunk.first_particle] +=
+            springs_.product(entry, displacement[static_cast<std::size_t>(other)]);
+    };
+    for (std::size_t entry = chunk.first_only; entry < chunk.second_only; ++entry)
+        add(entry, network_.first[entry], network_.second[entry]);
+    for (std::size_t entry = chunk.second_only; entry < chunk.crossing; ++entry)
+        add(entry, network_.second[entry], network_.first[entry]);
+    for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
+        const std::int32_t first = network_.first[entry], second = network_.second[entry];
+        if (first == second) continue;  // its own image: no relative motion but by strain
+        if (network_.owns_first(chunk, entry)) add(entry, first, second);
+        if (network_.owns_second(chunk, entry)) add(entry, second, first);
     }
-    return crossing + work.vector();
 }
 
 template class Stiffness<float>;

@@ -1,12 +1,12 @@
-// stiffness.h: the stiffness of a contact network and its product with a motion: in single precision, which halves the memory
+// stiffness.h: the stiffness of a contact network with the strains of its box: in single precision, which halves the memory
 // traffic and doubles what one instruction does, or in double where stiff contacts stand beside soft ones: there the rounding of a
 // stiff contact's force is more than what a soft one carries. Newton's iteration, in double, corrects what single leaves out.
 #pragma once
 
 #include <vector>
 
+#include "linalg/incomplete_cholesky.h"
 #include "sintering/contact_network.h"
-#include "linalg/quad.h"
 
 namespace kiln::sintering {
 
@@ -21,56 +21,46 @@ struct QuadMotion {
     explicit QuadMotion(std::size_t particles = 0) : displacement(particles) {}
 };
 
+/// Springs of the entries of a network, what strains of the box do to its particles, and the factorisation of each chunk.
 template <typename Real>
 class Stiffness {
    public:
     /// Keeps a reference to the network.
     explicit Stiffness(const ContactNetwork& network);
+    Stiffness(const Stiffness&) = delete;  // the factor refers to the springs
+    Stiffness& operator=(const Stiffness&) = delete;
 
     const ContactNetwork& network() const { return network_; }
+    linalg::EdgeStiffness<Real>& springs() { return springs_; }
+    const linalg::EdgeStiffness<Real>& springs() const { return springs_; }
 
-    /// Direction of an entry, a unit vector from i to j.
-    void set_direction(std::size_t entry, const Vec3& normal) { direction_[entry] = linalg::quad<Real>(normal); }
+    /// Takes the present springs into all that follows. branch: from node to node of each pair, m.
+    void assemble(std::span<const Vec3> branch);
 
-    /// Stiffness of an entry along its direction and across it, in any one unit.
-    void set(std::size_t entry, double normal, double tangential) {
-        direction_[entry].lanes[3] = static_cast<Real>(normal - tangential);
-        tangential_[entry] = static_cast<Real>(tangential);
-    }
+    const linalg::IncompleteCholesky<Real>& factor() const { return factor_; }
+    const linalg::NodeRange& range(std::size_t chunk) const { return ranges_[chunk]; }
 
-    Vec3 direction(std::size_t entry) const {
-        return linalg::vector(direction_[entry]);
-    }
+    /// Work conjugate to each strain for a unit of each, all particles following the box; its inverse along the axes that contacts
+    /// reach through.
+    const Eigen::Matrix3d& of_strain() const { return of_strain_; }
+    const Eigen::Matrix3d& strain_inverse() const { return strain_inverse_; }
 
-    /// kt I + (kn - kt) n n^T of an entry.
-    Eigen::Matrix3d block(std::size_t entry) const {
-        const Vec3 n = direction(entry);
-        Eigen::Matrix3d block = static_cast<double>(direction_[entry].lanes[3]) * n * n.transpose();
-        block.diagonal().array() += static_cast<double>(tangential_[entry]);
-        return block;
-    }
+    /// Forces that a unit of each strain exerts on a particle that follows the box.
+    const std::array<Quad<Real>, 3>& strain_forces(std::size_t particle) const { return strain_forces_[particle]; }
 
-    /// First half of a product, for one chunk: total displacements u + e*x of its particles.
-    void displace(std::size_t chunk, const QuadMotion<Real>& motion, std::vector<Quad<Real>>& total) const;
-
-    /// Second half for one chunk, once all chunks are displaced: forces on its particles. Gives the chunk's part of the work
-    /// conjugate to the strains.
-    Vec3 multiply(std::size_t chunk, const Vec3& strain, const std::vector<Quad<Real>>& total, QuadMotion<Real>& forces) const;
+    /// Adds up, for each particle of a chunk, the springs to particles of other chunks and through the faces of the box, times the
+    /// displacements of those.
+    void add_outer(std::size_t chunk, const std::vector<Quad<Real>>& displacement, Quad<Real>* sums) const;
 
    private:
-    Quad<Real> force(std::size_t entry, Quad<Real> du) const {
-        const Quad<Real> n = direction_[entry];  // the spare place of du is zero, so that of n does not enter the first product
-        return tangential_[entry] * du + linalg::sum(n * du) * linalg::all<3>(n) * n;
-    }
-    template <bool AddFirst, bool AddSecond>
-    void multiply_range(std::size_t begin, std::size_t end, const Quad<Real>* total, Quad<Real>* forces) const;
-    Vec3 multiply_crossing(const ContactNetwork::Chunk& chunk, const Vec3& strain, const Quad<Real>* total,
-                           Quad<Real>* forces) const;
+    Eigen::Matrix3d find_strain_forces(std::size_t chunk, std::span<const Vec3> branch);
 
     const ContactNetwork& network_;
-    std::vector<Quad<Real>> position_;     // m, from the middle of the particles' extent
-    std::vector<Quad<Real>> direction_;    // of each entry, with kn - kt in the spare place
-    std::vector<Real> tangential_;  // kt
+    linalg::EdgeStiffness<Real> springs_;
+    std::vector<linalg::NodeRange> ranges_;  // of the chunks
+    linalg::IncompleteCholesky<Real> factor_;
+    std::vector<std::array<Quad<Real>, 3>> strain_forces_;  // of each particle
+    Eigen::Matrix3d of_strain_ = Eigen::Matrix3d::Zero(), strain_inverse_ = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace kiln::sintering

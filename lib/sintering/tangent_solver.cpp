@@ -18,29 +18,19 @@ Range components(const ContactNetwork& network, std::size_t chunk) {
     return {3 * c.first_particle, 3 * c.last_particle};
 }
 
-/// Sum of the products of a chunk's displacements.
-template <typename Real>
-double dot(const ContactNetwork::Chunk& chunk, const QuadMotion<Real>& a, const QuadMotion<Real>& b) {
-    linalg::WideQuad sums;
-    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
-        linalg::add_product(a.displacement[row], b.displacement[row], sums);
-    return sums.sum();
-}
-
-/// The largest size of a component.
-double max_component(const Motion& motion) {
-    double most = motion.strain.cwiseAbs().maxCoeff();
-    for (const double component : motion.displacement) {
-        if (!std::isfinite(component)) throw Error("a force on a particle is not a finite number");
-        most = std::max(most, std::abs(component));
+/// The largest size of a number, or a number that is not finite.
+struct Largest {
+    double size = 0.0;
+    void operator+=(const Largest& other) { take(other.size); }
+    void take(double number) {
+        if (!(std::abs(number) <= size)) size = std::isnan(size) ? size : std::abs(number);
     }
-    return most;
-}
+};
 
 }  // namespace
 
 double dot(const ContactNetwork& network, const Motion& a, const Motion& b) {
-    return a.strain.dot(b.strain) + network.sum_chunks([&](std::size_t chunk) {
+    return a.strain.dot(b.strain) + network.sum_chunks(0.0, [&](std::size_t chunk) {
         const Range range = components(network, chunk);
         double sum = 0.0;
         for (std::size_t k = range.first; k < range.last; ++k) sum += a.displacement[k] * b.displacement[k];
@@ -61,84 +51,152 @@ TangentSolver<Real>::TangentSolver(const Box& box, const ContactNetwork& network
                                    std::span<const RigidClusters> coarse)
     : network_(network),
       stiffness_(network),
-      preconditioner_(box, network, pairs, coarse),
+      coarse_(box, network, pairs, coarse),
       x_(network.particles()),
-      r_(network.particles()),
-      z_(network.particles()),
       p_(network.particles()),
-      q_(network.particles()),
-      total_(network.particles()),
-      work_(network.chunks().size()) {}
+      y_(network.particles()),
+      residual_(network.particles()),
+      product_(network.particles()),
+      known_(network.particles()),
+      coarse_r_(coarse.empty() ? 0 : network.particles()),
+      coarse_z_(coarse.empty() ? 0 : network.particles()) {}
+
+template <typename Real>
+void TangentSolver<Real>::factorise(std::span<const Vec3> branch) {
+    stiffness_.assemble(branch);
+    coarse_.factorise(stiffness_.springs());
+}
+
+/// The residual of x = 0, and zeros.
+template <typename Real>
+void TangentSolver<Real>::start(std::size_t index, const Motion& b, double scale) {
+    const linalg::NodeRange& range = stiffness_.range(index);
+    for (auto* field : {&x_, &p_, &y_, &product_})
+        std::fill(field->begin() + static_cast<std::ptrdiff_t>(range.first_node),
+                  field->begin() + static_cast<std::ptrdiff_t>(range.last_node), Quad<Real>{});
+    std::array<Quad<Real>, ContactNetwork::chunk_particles> sums{};
+    stiffness_.factor().forward(range, sums.data(), [&](std::size_t node, Quad<Real> sum) {
+        residual_[node] = sum + linalg::quad<Real>(b.displacement[3 * node] / scale, b.displacement[3 * node + 1] / scale,
+                                                   b.displacement[3 * node + 2] / scale);
+        return stiffness_.factor().inverse(node) * residual_[node];
+    });
+}
 
 template <typename Real>
 double TangentSolver<Real>::advance(double step) {
-    x_.strain += step * p_.strain;
-    r_.strain -= step * q_.strain;
-    preconditioner_.apply_strain(r_, z_);
-    project(z_, allowed_);
+    x_strain_ += step * p_strain_;
+    residual_strain_ -= step * product_strain_;
+    z_strain_ = allowed_ * (stiffness_.strain_inverse() * residual_strain_);
     const auto length = static_cast<Real>(step);
-    const double product = network_.sum_chunks([&](std::size_t index) {
-        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
-            x_.displacement[row] += length * p_.displacement[row];
-            r_.displacement[row] -= length * q_.displacement[row];
+    const double product = network_.sum_chunks(0.0, [&](std::size_t index) {
+        const linalg::NodeRange& range = stiffness_.range(index);
+        linalg::WideQuad sums;
+        for (std::size_t row = range.first_node; row < range.last_node; ++row) {
+            x_[row] += length * p_[row];
+            residual_[row] -= length * product_[row];
+            linalg::add_product(residual_[row], stiffness_.factor().inverse(row) * residual_[row], sums);
         }
-        preconditioner_.apply(index, r_, z_);
-        return dot(chunk, r_, z_);
+        return sums.sum();
     });
-    if (!preconditioner_.has_coarse_spaces()) return r_.strain.dot(z_.strain) + product;
-    preconditioner_.add_coarse(allowed_, r_, z_);
-    return r_.strain.dot(z_.strain) +
-           network_.sum_chunks([&](std::size_t index) { return dot(network_.chunks()[index], r_, z_); });
+    return product + (coarse_.empty() ? 0.0 : apply_coarse()) + residual_strain_.dot(z_strain_);
+}
+
+/// Leaves in coarse_z_ what the coarse spaces bring to y, and adds it to the strains. Returns its product with the residual.
+template <typename Real>
+double TangentSolver<Real>::apply_coarse() {
+    const linalg::IncompleteCholesky<Real>& factor = stiffness_.factor();
+    network_.for_chunks([&](std::size_t index) {  // r = (D + L) w
+        std::array<Quad<Real>, ContactNetwork::chunk_particles> sums{};
+        factor.forward(stiffness_.range(index), sums.data(), [&](std::size_t node, Quad<Real> sum) {
+            coarse_r_.displacement[node] = residual_[node] - sum;
+            return factor.inverse(node) * residual_[node];
+        });
+    });
+    coarse_r_.strain = residual_strain_;
+    coarse_.apply(allowed_, coarse_r_, coarse_z_);
+    z_strain_ += coarse_z_.strain;
+    return network_.sum_chunks(0.0, [&](std::size_t index) {  // y = D^-1 (D + L^T) z
+        linalg::WideQuad sums;
+        factor.backward(stiffness_.range(index), coarse_z_.displacement.data(), [&](std::size_t node, Quad<Real> sum) {
+            linalg::add_product(coarse_r_.displacement[node], coarse_z_.displacement[node], sums);
+            coarse_r_.displacement[node] = coarse_z_.displacement[node] - factor.inverse(node) * sum;
+        });
+        return sums.sum();
+    });
+}
+
+template <typename Real>
+void TangentSolver<Real>::find_direction(std::size_t index, Real ratio) {
+    const linalg::IncompleteCholesky<Real>& factor = stiffness_.factor();
+    factor.backward(stiffness_.range(index), p_.data(), [&](std::size_t node, Quad<Real> sum) {
+        Quad<Real> y = factor.inverse(node) * residual_[node] + ratio * y_[node];
+        if (!coarse_.empty()) y += coarse_r_.displacement[node];
+        y_[node] = y;
+        p_[node] = y + factor.inverse(node) * sum;
+        known_[node] = factor.diagonal(node) * p_[node] - sum;
+    });
+}
+
+template <typename Real>
+typename TangentSolver<Real>::Product TangentSolver<Real>::multiply(std::size_t index) {
+    const linalg::IncompleteCholesky<Real>& factor = stiffness_.factor();
+    std::array<Quad<Real>, ContactNetwork::chunk_particles> sums{};
+    stiffness_.add_outer(index, p_, sums.data());
+    const Quad<Real> strain = linalg::quad<Real>(p_strain_);
+    const Quad<Real> x = linalg::all<0>(strain), y = linalg::all<1>(strain), z = linalg::all<2>(strain);
+    linalg::WideQuad curvature;
+    std::array<linalg::WideQuad, 3> work;
+    factor.forward(stiffness_.range(index), sums.data(), [&](std::size_t node, Quad<Real> sum) {
+        const std::array<Quad<Real>, 3>& unit = stiffness_.strain_forces(node);
+        for (std::size_t axis = 0; axis < 3; ++axis) linalg::add_product(unit[axis], p_[node], work[axis]);
+        product_[node] = known_[node] - sum + unit[0] * x + unit[1] * y + unit[2] * z;
+        linalg::add_product(y_[node], product_[node], curvature);
+        return p_[node] - factor.inverse(node) * product_[node];
+    });
+    return {curvature.sum(), Vec3(work[0].sum(), work[1].sum(), work[2].sum())};
 }
 
 template <typename Real>
 double TangentSolver<Real>::turn(double ratio) {
-    p_.strain = z_.strain + ratio * p_.strain;
-    const auto kept = static_cast<Real>(ratio);
-    network_.for_chunks([&](std::size_t index) {
-        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
-            p_.displacement[row] = z_.displacement[row] + kept * p_.displacement[row];
-        stiffness_.displace(index, p_, total_);
-    });
-    const double curvature = network_.sum_chunks([&](std::size_t index) {
-        work_[index] = stiffness_.multiply(index, p_.strain, total_, q_);
-        return dot(network_.chunks()[index], p_, q_);
-    });
-    q_.strain.setZero();
-    for (const Vec3& part : work_) q_.strain += part;
-    project(q_, allowed_);
-    return curvature + p_.strain.dot(q_.strain);
+    p_strain_ = z_strain_ + ratio * p_strain_;
+    network_.for_chunks([&](std::size_t index) { find_direction(index, static_cast<Real>(ratio)); });
+    const Product product = network_.sum_chunks(Product(), [&](std::size_t index) { return multiply(index); });
+    product_strain_ = allowed_ * (product.strain + stiffness_.of_strain() * p_strain_);
+    return product.curvature + p_strain_.dot(product_strain_);
 }
 
 template <typename Real>
 linalg::CgProgress TangentSolver<Real>::solve(const Eigen::Matrix3d& allowed, const Motion& b, Motion& x,
                                               const std::function<bool(const linalg::CgProgress&)>& done) {
-    const double scale = max_component(b);
-    std::fill(x.displacement.begin(), x.displacement.end(), 0.0);
-    x.strain.setZero();
-    if (scale == 0.0) return {};
+    Largest largest = network_.sum_chunks(Largest(), [&](std::size_t index) {
+        const Range range = components(network_, index);
+        Largest part;
+        for (std::size_t k = range.first; k < range.last; ++k) part.take(b.displacement[k]);
+        return part;
+    });
+    for (const double component : b.strain) largest.take(component);
+    const double scale = largest.size;
+    if (!std::isfinite(scale)) throw Error("a force on a particle is not a finite number");
     allowed_ = allowed;
-    for (QuadMotion<Real>* motion : {&x_, &p_, &q_}) {
-        std::fill(motion->displacement.begin(), motion->displacement.end(), Quad<Real>{});
-        motion->strain.setZero();
+    x_strain_ = p_strain_ = z_strain_ = product_strain_ = Vec3::Zero();
+    linalg::CgProgress progress;
+    if (scale > 0.0) {
+        network_.for_chunks([&](std::size_t index) { start(index, b, scale); });
+        residual_strain_ = allowed * b.strain / scale;
+        const auto unscaled = [&](linalg::CgProgress scaled) {
+            for (double* square : {&scaled.energy, &scaled.error2, &scaled.residual2}) *square *= scale * scale;
+            return scaled;
+        };
+        progress = unscaled(
+            linalg::conjugate_gradient(*this, [&](const linalg::CgProgress& so_far) { return done(unscaled(so_far)); }));
     }
-    for (std::size_t row = 0; row < r_.displacement.size(); ++row)
-        r_.displacement[row] = linalg::quad<Real>(b.displacement[3 * row] / scale, b.displacement[3 * row + 1] / scale,
-                                                  b.displacement[3 * row + 2] / scale);
-    r_.strain = b.strain / scale;
-    project(r_, allowed);
-    const auto unscaled = [&](linalg::CgProgress progress) {
-        for (double* square : {&progress.energy, &progress.error2, &progress.residual2}) *square *= scale * scale;
-        return progress;
-    };
-    const linalg::CgProgress progress = unscaled(
-        linalg::conjugate_gradient(*this, [&](const linalg::CgProgress& so_far) { return done(unscaled(so_far)); }));
-    for (std::size_t row = 0; row < x_.displacement.size(); ++row)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            x.displacement[3 * row + axis] = scale * static_cast<double>(x_.displacement[row].lanes[axis]);
-    x.strain = scale * x_.strain;
+    network_.for_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                x.displacement[3 * row + axis] = scale > 0.0 ? scale * static_cast<double>(x_[row].lanes[axis]) : 0.0;
+    });
+    x.strain = scale * x_strain_;
     return progress;
 }
 

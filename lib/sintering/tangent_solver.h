@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "linalg/conjugate_gradient.h"
-#include "sintering/preconditioner.h"
+#include "sintering/coarse_spaces.h"
 
 namespace kiln::sintering {
 
@@ -19,7 +19,13 @@ template <typename AnyMotion>
 void project(AnyMotion& motion, const Eigen::Matrix3d& allowed) { motion.strain = allowed * motion.strain; }
 
 /// Keeps the stiffness, its preconditioner and work vectors, in the precision Real, between solves. Refers to the network and the
-/// coarse spaces (see Preconditioner).
+/// coarse spaces (see CoarseSpaces).
+///
+/// The preconditioner is M = (D + L) D^-1 (D + L^T) of the particles of each chunk (linalg::IncompleteCholesky), the inverse of the
+/// strains' own block, and the coarse spaces. L is that of the stiffness itself, so one pass back and one forward through the
+/// contacts of a chunk give the product and the preconditioner in one (Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981) 1; Saad,
+/// Iterative methods for sparse linear systems, 2003, section 9.2.2): with w the residual r after (D + L) w = r, and the direction
+/// p = (D + L^T)^-1 D y, the product after the same is v with D v = s, s = (A - D - L^T) p + D y - L (v - p).
 template <typename Real>
 class TangentSolver {
    public:
@@ -28,11 +34,10 @@ class TangentSolver {
     TangentSolver(const TangentSolver&) = delete;
     TangentSolver& operator=(const TangentSolver&) = delete;
 
-    Stiffness<Real>& stiffness() { return stiffness_; }
-    const Stiffness<Real>& stiffness() const { return stiffness_; }
+    linalg::EdgeStiffness<Real>& springs() { return stiffness_.springs(); }
 
-    /// Takes the present stiffness into the preconditioner. branch: from node to node of each pair, m.
-    void factorise(std::span<const Vec3> branch) { preconditioner_.factorise(stiffness_, branch); }
+    /// Takes the present springs into the stiffness and the preconditioner. branch: from node to node of each pair, m.
+    void factorise(std::span<const Vec3> branch);
 
     /// Solves K x = b from x = 0 until done(progress) says so. Vectors are scaled to numbers near one on the way. In single
     /// precision goals below 1e-5 or so are for the caller to reach, by solving again for what is left of b.
@@ -47,13 +52,28 @@ class TangentSolver {
     double turn(double ratio);
 
    private:
+    struct Product {
+        double curvature = 0.0;
+        Vec3 strain = Vec3::Zero();
+        void operator+=(const Product& other) {
+            curvature += other.curvature;
+            strain += other.strain;
+        }
+    };
+    void start(std::size_t chunk, const Motion& b, double scale);
+    double apply_coarse();
+    void find_direction(std::size_t chunk, Real ratio);
+    Product multiply(std::size_t chunk);
+
     const ContactNetwork& network_;
     Stiffness<Real> stiffness_;
-    Preconditioner<Real> preconditioner_;
+    CoarseSpaces<Real> coarse_;
     Eigen::Matrix3d allowed_ = Eigen::Matrix3d::Identity();
-    QuadMotion<Real> x_, r_, z_, p_, q_;
-    std::vector<Quad<Real>> total_;
-    std::vector<Vec3> work_;
+    // Of each particle: x, p and y; D w of the residual; s of the product; and (A_jj p_j + L^T p), what each contact brings to the
+    // product whose force is known before the forward pass. Strains beside them, without any transformation.
+    std::vector<Quad<Real>> x_, p_, y_, residual_, product_, known_;
+    Vec3 x_strain_, p_strain_, residual_strain_, z_strain_, product_strain_;
+    QuadMotion<Real> coarse_r_, coarse_z_;  // where there are coarse spaces
 };
 
 }  // namespace kiln::sintering

@@ -70,8 +70,8 @@ class Response {
         for (const double value : contacts.normal) unit_ = std::max(unit_, value);
         for (std::size_t entry = 0; entry < network_.pair.size(); ++entry) {
             const auto row = static_cast<std::size_t>(network_.pair[entry]);
-            solver_.stiffness().set_direction(entry, contacts.normals[row]);
-            solver_.stiffness().set(entry, contacts.normal[row] / unit_, contacts.tangential[row] / unit_);
+            solver_.springs().set_direction(entry, contacts.normals[row]);
+            solver_.springs().set(entry, contacts.normal[row] / unit_, contacts.tangential[row] / unit_);
         }
         solver_.factorise(contacts.branch);
     }

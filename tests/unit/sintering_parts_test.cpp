@@ -229,8 +229,8 @@ TEST_CASE("a force that is not a number ends a solve with an error") {
     const Box box = cube(10.0, false);
     const ContactNetwork network(box, position, pairs);
     TangentSolver<double> solver(box, network, pairs);
-    solver.stiffness().set_direction(0, Vec3::UnitX());
-    solver.stiffness().set(0, 1.0, 0.1);
+    solver.springs().set_direction(0, Vec3::UnitX());
+    solver.springs().set(0, 1.0, 0.1);
     solver.factorise(std::vector<Vec3>{Vec3::UnitX()});
     Motion force(2), motion(2);
     force.displacement[0] = std::nan("");
@@ -238,7 +238,7 @@ TEST_CASE("a force that is not a number ends a solve with an error") {
     CHECK_THROWS_WITH_AS(solver.solve(Eigen::Matrix3d::Zero(), force, motion, done), doctest::Contains("not a finite number"),
                          Error);
     force.displacement = {-1.0, 0.0, 0.0, 1.0, 0.0, 0.0};
-    solver.stiffness().set(0, HUGE_VAL, 0.1);
+    solver.springs().set(0, HUGE_VAL, 0.1);
     solver.factorise(std::vector<Vec3>{Vec3::UnitX()});
     CHECK_THROWS_AS(solver.solve(Eigen::Matrix3d::Zero(), force, motion, done), Error);
 }
