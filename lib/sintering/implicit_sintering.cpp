@@ -20,9 +20,9 @@ constexpr double accepted_factor = 0.7;       // factor to the length that meets
 constexpr double min_factor = 0.2;     // of a rejected step's length
 constexpr double typical_log_range = 0.4;   // of a whole run, over which the tolerance is spread
 constexpr std::size_t small_packing = 1000; // particles; solving closely costs nothing there
-constexpr double small_fraction = 1e-3;        // of the solver's tolerance
-constexpr double predictor_fraction = 20.0;  // of the solver's tolerance, for a first-order solution that only prepares the second
-constexpr double first_order_fraction = 0.1;   // of it, for first-order steps, whose error falls with their length only slowly
+constexpr double small_fraction = 3e-4;        // of the solver's tolerance
+constexpr double predictor_fraction = 7.0;   // of the solver's tolerance, for a first-order solution that only prepares the second
+constexpr double first_order_fraction = 0.03;  // of it, for first-order steps, whose error falls with their length only slowly
 constexpr double harmless_fraction = 0.03;     // of the tolerance, change of density in a first-order step that needs no control
 constexpr double invisible_approach = 1e-20;  // of the mean radius; the rounding of a position is 1e-16 and more of it, and no
                                               // force in a packing is thousands of times that of an isolated pair
@@ -34,7 +34,8 @@ constexpr std::size_t max_idle_steps = 100;
 constexpr double idle = 1e-10;              // log density change of an idle step
 
 constexpr int limit_corrections = 4;         // of springs at neck limits, each of which takes off most of what is left
-constexpr double landing_closeness = 2e-3;  // of a step's change of density, within which scaling its motion is exact enough
+constexpr double landing_closeness = 0.05;  // of a step's change of density, within which its motion is scaled: the error is half
+                                            // of the square of that times the change of rate in a step, 1e-4 of the step
 constexpr int max_landings = 40;           // attempts to end a step at a required density
 constexpr int max_rejections = 20;         // of one step
 
@@ -91,7 +92,7 @@ Eigen::Matrix3d ImplicitSintering::allowed_strain(const Axes& still) const {
 Motion ImplicitSintering::scaled(const Motion& motion, double factor) const {
     Motion guess(body_.size());
     if (motion.displacement.size() != guess.displacement.size()) return guess;
-    for (std::size_t k = 0; k < guess.displacement.size(); ++k) guess.displacement[k] = factor * motion.displacement[k];
+    for_rows(guess.displacement.size(), [&](std::size_t k) { guess.displacement[k] = factor * motion.displacement[k]; });
     guess.strain = factor * motion.strain;
     return guess;
 }
@@ -182,39 +183,53 @@ ImplicitSintering::Trial ImplicitSintering::attempt(double until, const Motion& 
     return trial;
 }
 
-ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double& duration, const Trial& beyond) {
+bool ImplicitSintering::near(double log_change, const Trial& trial) const {
+    return std::isfinite(log_change) && std::abs(trial.log_density - log_change) <= landing_closeness * log_change;
+}
+
+ImplicitSintering::Trial ImplicitSintering::land_on(double log_change, double latest_time, double& duration,
+                                                    const Trial& first) {
     // The density is a smooth function of the step's length: first a parabola through the last step's rate, then secants inside the
     // bracket. What is left in the end is taken by scaling the motion, so that the density is exact.
     double low = 0.0, high = duration;
-    double before = duration, before_change = beyond.log_density, here = parabola(log_change, duration, beyond.log_density);
-    Trial trial = beyond;
-    for (int iteration = 0; iteration < max_landings; ++iteration) {
-        trial = attempt(kinetics_.after(body_.time(), here), scaled(trial.motion, log_change / trial.log_density));
-        const double miss = trial.log_density - log_change, rate = (trial.log_density - before_change) / (here - before);
-        const double next = here - miss / rate;
-        (miss > 0.0 ? high : low) = here;
-        before = std::exchange(here, next > low && next < high ? next : 0.5 * (low + high));
+    double before = 0.0, before_change = 0.0;
+    Trial trial = first;
+    for (int iteration = 0; iteration < max_landings && !near(log_change, trial); ++iteration) {
+        const double miss = trial.log_density - log_change, rate = (trial.log_density - before_change) / (duration - before);
+        (miss > 0.0 ? high : low) = duration;
+        const double next = iteration == 0 ? parabola(rate_of(trial, duration), log_change) : duration - miss / rate;
+        before = std::exchange(duration, next > low && next < high ? next : 0.5 * (low + high));
         before_change = trial.log_density;
-        if (std::abs(miss) <= landing_closeness * log_change) break;
+        trial = attempt(kinetics_.after(body_.time(), duration), scaled(trial.motion, log_change / trial.log_density));
     }
+    const Rate rate = rate_of(trial, duration);
+    const double mean = trial.log_density / duration, end = std::clamp(rate.start + rate.slope * duration, 0.5 * mean, 2.0 * mean);
+    duration -= (trial.log_density - log_change) / end;
     for (int pass = 0; pass < 3; ++pass) {  // the logarithm of the density is nearly linear in the motion
         trial.motion = scaled(trial.motion, log_change / trial.log_density);
         Die(settings_.confined, {}, die_gap(body_.strain())).confine(trial.motion.strain);
         trial.log_density = body_.log_density_change(trial.motion);
     }
-    duration = here;
-    trial.until = kinetics_.after(body_.time(), here);
+    trial.until = std::min(kinetics_.after(body_.time(), duration), latest_time);
     return trial;
 }
 
-double ImplicitSintering::parabola(double log_change, double duration, double log_density) const {
-    // Rates of the last step and this one, each in the middle of its step, give the rate at the start and its slope.
-    const double rate = log_density / duration;
+ImplicitSintering::Rate ImplicitSintering::rate_of(const Trial& trial, double duration) const {
+    // Rates of the last step and this one are those in the middle of each.
+    const double rate = trial.log_density / duration;
     const double slope = last_duration_ > 0.0 ? (rate - last_rate_) / (0.5 * (duration + last_duration_)) : 0.0;
-    const double start = rate - 0.5 * duration * slope;
-    const double root = start * start + 2.0 * slope * log_change;
-    const double guess = root > 0.0 ? 2.0 * log_change / (start + std::sqrt(root)) : 0.0;
-    return guess > 0.0 && guess < duration ? guess : duration * log_change / log_density;
+    return {rate - 0.5 * duration * slope, slope};
+}
+
+double ImplicitSintering::parabola(const Rate& rate, double log_change) {
+    const double root = rate.start * rate.start + 2.0 * rate.slope * log_change;
+    return root > 0.0 ? 2.0 * log_change / (rate.start + std::sqrt(root)) : std::numeric_limits<double>::infinity();
+}
+
+double ImplicitSintering::expected_duration(double log_change) const {
+    if (!std::isfinite(log_change) || !(last_rate_ > 0.0) || !(rate_before_ > 0.0)) return std::numeric_limits<double>::infinity();
+    const double slope = (last_rate_ - rate_before_) / last_duration_;
+    return parabola({last_rate_ + 0.5 * last_duration_ * slope, slope}, log_change);
 }
 
 double ImplicitSintering::step_error(const Trial& trial) const {
@@ -237,15 +252,16 @@ double ImplicitSintering::length_factor_for(const Trial& trial) const {
     return fraction * std::max(std::abs(trial.log_density), harmless_fraction * settings_.tolerance);
 }
 
-ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time) {
-    const double left = kinetics_.equivalent(body_.time(), latest_time);
-    duration = std::min(next_duration_, left);
-    const bool ends_on_time = duration < next_duration_ || left == next_duration_;
+ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, double latest_time, double log_change) {
+    const double left = kinetics_.equivalent(body_.time(), latest_time), lands = expected_duration(log_change);
+    duration = std::min({next_duration_, lands, left});
+    const bool ends_on_time = duration == left, ends_early = duration < next_duration_;
     double until = ends_on_time ? latest_time : kinetics_.after(body_.time(), duration);
     const double slowing = rate_before_ > 0.0 && last_rate_ > 0.0 ? std::clamp(last_rate_ / rate_before_, 0.5, 1.0) : 1.0;
     Motion guess = scaled(last_motion_, last_duration_ > 0.0 ? slowing * duration / last_duration_ : 0.0);
     Trial trial;
-    for (int rejected = 0;; ++rejected) {
+    int rejected = 0;
+    for (;; ++rejected) {
         if (!(until > body_.time()))
             throw Error("no step is short enough to converge at " + std::to_string(body_.time()) + " s");
         trial = attempt(until, guess);
@@ -264,7 +280,7 @@ ImplicitSintering::Trial ImplicitSintering::accepted_attempt(double& duration, d
         until = kinetics_.after(body_.time(), duration);
     }
     const double growth = std::clamp(0.9 * length_factor_for(trial), 0.5, 2.5);
-    next_duration_ = ends_on_time && until == latest_time ? std::max(next_duration_, duration * growth) : duration * growth;
+    next_duration_ = ends_early && rejected == 0 ? std::max(next_duration_, duration * growth) : duration * growth;
     const double log_step_left = 0.8 * max_log_step / std::max(std::abs(trial.log_density), 1e-300);
     next_duration_ = std::min(next_duration_, duration * std::max(log_step_left, 0.5));
     return trial;
@@ -287,8 +303,9 @@ StepRecord ImplicitSintering::advance(double latest_time, double highest_density
         if (nothing_moves(start, latest_time)) {
             trial = rest(latest_time);
         } else {
-            trial = accepted_attempt(duration, latest_time);
-            if (trial.log_density > wanted_change) trial = land_on(wanted_change, duration, trial);
+            trial = accepted_attempt(duration, latest_time, wanted_change);
+            if (trial.log_density > wanted_change || (trial.until < latest_time && near(wanted_change, trial)))
+                trial = land_on(wanted_change, latest_time, duration, trial);
         }
     } catch (...) {
         next_duration_ = planned_duration;  // a run that was stopped on its way to a density resumes as it began

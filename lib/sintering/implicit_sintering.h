@@ -57,9 +57,18 @@ class ImplicitSintering : public SinteringMethod {
     Trial attempt(double until, const Motion& guess);
     double step_error(const Trial& trial) const;  // estimated, relative, of the density
     double length_factor_for(const Trial& trial) const;    // factor to the length of step that the tolerance allows
-    Trial accepted_attempt(double& duration, double latest_time);
-    Trial land_on(double log_change, double& duration, const Trial& beyond);
-    double parabola(double log_change, double duration, double log_density) const;
+    /// A step that the tolerance allows, shorter if a change of the logarithm of the density is expected to come before.
+    Trial accepted_attempt(double& duration, double latest_time, double log_change);
+    /// True where a trial comes so close to a change of the logarithm of the density that scaling its motion ends there.
+    bool near(double log_change, const Trial& trial) const;
+    Trial land_on(double log_change, double latest_time, double& duration, const Trial& first);
+    /// Of the logarithm of the density, at the start of a step and by time, 1/s and 1/s2 of equivalent time.
+    struct Rate {
+        double start, slope;
+    };
+    Rate rate_of(const Trial& trial, double duration) const;
+    static double parabola(const Rate& rate, double log_change);  // time in which the change comes; infinity if it never does
+    double expected_duration(double log_change) const;            // of the same, by the last two steps
     Motion scaled(const Motion& motion, double factor) const;
     double first_duration();
     StepRecord finish(const Trial& trial, double duration);

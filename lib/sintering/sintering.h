@@ -25,7 +25,7 @@ struct SinteringSettings {
     std::array<bool, 3> confined{false, false, false};  // axes along which a die of the box's length at the start holds, see die.h
     Vec3 pressure = Vec3::Zero();                   // Pa, compressive, along the periodic axes
     double tolerance = 3e-4;         // relative error of the density over the whole run that the steps aim at
-    double solver_tolerance = 3e-3;  // relative error of a step's motion in the energy norm
+    double solver_tolerance = 9e-3;  // relative error of a step's motion in the energy norm
     bool second_order = true;        // of the implicit step
     double mass_scaling = 1e20;      // of the explicit method: inertial over real mass
     CoarseningSettings coarsening;   // of the implicit method
