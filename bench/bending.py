@@ -12,13 +12,12 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 
 import numpy
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-PROGRAMS = os.path.join(os.environ.get("BUILD", os.path.join(ROOT, "build")), "bin")
-sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "common"))
+import measure  # noqa: E402
+from measure import PROGRAMS, Run  # noqa: E402
 from style import ACCENT, LINE, REFERENCE, pyplot, save  # noqa: E402
 
 DIAMETER = 100e-9  # m, of the particles before they are pressed
@@ -32,28 +31,15 @@ DAMPINGS = (0.1, 0.3, 0.9)  # beside the default of 0.7
 
 
 def say(case, **values):
-    print(json.dumps({"bench": "bending", "case": case, **values}), flush=True)
-    return values
-
-
-def run(*command):
-    """Standard output of one of the programs, its seconds of wall time and its peak memory, bytes."""
-    start = time.perf_counter()
-    words = [str(word) for word in command]
-    process = subprocess.Popen([os.path.join(PROGRAMS, words[0]), *words[1:]], stdout=subprocess.PIPE, text=True)
-    text = process.stdout.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    if status != 0:
-        raise SystemExit(f"{' '.join(words)}: status {os.waitstatus_to_exitcode(status)}")
-    return text, time.perf_counter() - start, usage.ru_maxrss * 1024
+    return measure.say("bending", case, **values)
 
 
 def make_bar(folder, particles, seed=1, aspect=ASPECT, packing="--density 0.58", bonding=""):
     """A bar pressed to its density, with bonds: its file."""
     green, bar = (os.path.join(folder, f"{name}.kiln") for name in ("green", f"bar-{particles}-{seed}-{aspect}"))
-    run("sinter", "green", "-q", "-n", particles, "--diameter", "100nm", *packing.split(), "--compact-to", DENSITY,
-        "--aspect", f"{aspect}:1:1", "--seed", seed, "-o", green)
-    run("bondify", "-q", *bonding.split(), green, "-o", bar)
+    Run(["sinter", "green", "-q", "-n", particles, "--diameter", "100nm", *packing.split(), "--compact-to", DENSITY,
+         "--aspect", f"{aspect}:1:1", "--seed", seed, "-o", green])
+    Run(["bondify", "-q", *bonding.split(), green, "-o", bar])
     return bar
 
 
@@ -64,8 +50,8 @@ def quick_bar(folder, particles, aspect=ASPECT):
 
 def bend(bar, *options):
     """The document of a test with one cycle, its seconds and its peak memory."""
-    text, seconds, memory = run("bend", "-q", "--cycles", 1, *options, bar)
-    return json.loads(text), seconds, memory
+    run = Run(["bend", "-q", "--cycles", 1, *options, bar])
+    return run.document(), run.wall, run.peak_bytes
 
 
 def unloading_slope(test):
@@ -93,16 +79,16 @@ def slenderness(folder, given):
 def tolerances(folder, given):
     bar = quick_bar(folder, 10000)
     exact_slope = unloading_slope(bend(bar, "--tolerance", 1e-10)[0])
-    exact_modulus = json.loads(run("analyze", "elastic", "--tolerance", 1e-11, bar)[0])["young_modulus"]
+    exact_modulus = Run(["analyze", "elastic", "--tolerance", 1e-11, bar]).document()["young_modulus"]
     rows = []
     for tolerance in TOLERANCES:
         test, seconds, _ = bend(bar, "--tolerance", tolerance)
         rows.append(say("tolerance", of="bending", tolerance=tolerance, error=abs(unloading_slope(test) / exact_slope - 1),
                         seconds=seconds, iterations=test["iterations"]))
-        text, seconds, _ = run("analyze", "elastic", "--tolerance", tolerance, bar)
-        cell = json.loads(text)
+        run = Run(["analyze", "elastic", "--tolerance", tolerance, bar])
+        cell = run.document()
         rows.append(say("tolerance", of="cell", tolerance=tolerance, error=abs(cell["young_modulus"] / exact_modulus - 1),
-                        seconds=seconds, iterations=cell["iterations"]))
+                        seconds=run.wall, iterations=cell["iterations"]))
     return rows
 
 
@@ -139,7 +125,7 @@ def thickness(folder, given):
     for particles in (int(each) for each in given.sizes.split(",")):
         for seed in (int(each) for each in given.seeds.split(",")):
             bar = make_bar(folder, particles, seed, bonding=given.bonding)
-            cell = json.loads(run("analyze", "elastic", "--tolerance", 1e-6, bar)[0])["young_modulus"]
+            cell = Run(["analyze", "elastic", "--tolerance", 1e-6, bar]).document()["young_modulus"]
             test, seconds, _ = bend(bar)
             beam, near = (elastic_modulus(test, kind) / cell for kind in (False, True))
             rows.append(say("thickness", particles=particles, seed=seed, diameter_over_height=DIAMETER / test["height"],

@@ -10,14 +10,12 @@ size    wall time, peak memory and iterations from a density of 0.58 to 0.70, fo
 import argparse
 import json
 import os
-import subprocess
 import sys
 import tempfile
-import time
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-PROGRAMS = os.path.join(os.environ.get("BUILD", os.path.join(ROOT, "build")), "bin")
-sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "common"))
+import measure  # noqa: E402
+from measure import Run, alone  # noqa: E402
 import kiln  # noqa: E402
 from style import ACCENT, LINE, REFERENCE, pyplot, save  # noqa: E402
 
@@ -34,29 +32,18 @@ SCALINGS = (1e20, 1e19, 1e18)
 
 
 def say(case, **values):
-    print(json.dumps({"bench": "sintering", "case": case, **values}), flush=True)
-
-
-def run(command, environment=None):
-    """Runs one of the programs; seconds of wall time, seconds of the processor, and peak memory, bytes."""
-    start = time.perf_counter()
-    process = subprocess.Popen([os.path.join(PROGRAMS, command[0]), *command[1:]], env=environment)
-    _, status, usage = os.wait4(process.pid, 0)
-    if status != 0:
-        raise SystemExit(f"{' '.join(command)}: status {os.waitstatus_to_exitcode(status)}")
-    return time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+    return measure.say("sintering", case, **values)
 
 
 def sinter(folder, green, options, environment=None):
-    """Densities at the wanted states, what run() gives, and the history of a run."""
+    """Densities at the wanted states, the run, and its history."""
     states, history = os.path.join(folder, "states.kiln"), os.path.join(folder, "history.jsonl")
-    command = ["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green]
-    usage = run(command, environment)
+    run = Run(["sinter", "-q", "--temperature", "1200C", *options.split(), "--history", history, "-o", states, green], environment)
     with open(states, "rb") as stream:
         densities = [kiln.relative_density(state) for state in kiln.documents(stream)]
     with open(history, encoding="utf-8") as stream:
         steps = [json.loads(line) for line in stream]
-    return densities, usage, steps
+    return densities, run, steps
 
 
 def factors(rows):
@@ -74,22 +61,22 @@ def factors(rows):
 
 def errors(folder, starts, particles, tightest, lightest):
     rows = []
-    alone = {**os.environ, "OMP_NUM_THREADS": "1"}
     for name in starts:
         packing, boundary = STARTS[name]
         green = os.path.join(folder, "green.kiln")
-        run(["sinter", "green", "-q", "-n", str(particles), *packing.split(), "--seed", "1", "-o", green])
+        Run(["sinter", "green", "-q", "-n", particles, *packing.split(), "--seed", 1, "-o", green])
         options = f"--at-time {TIMES} {boundary}"
-        exact = sinter(folder, green, f"{options} --tolerance {REFERENCE_TOLERANCE}", alone)[0]
+        exact = sinter(folder, green, f"{options} --tolerance {REFERENCE_TOLERANCE}", alone())[0]
         methods = [("implicit, second order", f"--tolerance {t}", t) for t in TOLERANCES if t >= tightest]
         methods += [("implicit, first order", f"--order 1 --tolerance {t}", t) 
                     for t in TOLERANCES if t >= max(tightest, TIGHTEST_FIRST_ORDER)]
         methods += [("explicit", f"--method explicit --mass-scaling {s}", s) for s in SCALINGS if s >= lightest]
         for method, more, setting in methods:
-            densities, (_, seconds, _), steps = sinter(folder, green, f"{options} {more}", alone)
+            densities, run, steps = sinter(folder, green, f"{options} {more}", alone())
             error = max(abs(a / b - 1.0) for a, b in zip(densities, exact))
             count = len(steps) if method != "explicit" else sum(step["attempts"] for step in steps)
-            rows.append({"particles": particles, "start": name, "method": method, "setting": setting, "seconds": seconds,
+            rows.append({"particles": particles, "start": name, "method": method, "setting": setting,
+                         "seconds": run.processor,
                          "error": error, "steps": count})
             say("error", **rows[-1])
     factors(rows)
@@ -102,18 +89,19 @@ def sizes(folder, largest):
         if particles > largest:
             break
         green = os.path.join(folder, "green.kiln")
-        run(["sinter", "green", "-q", "-n", str(particles), *STARTS["affine"][0].split(), "--seed", "1", "-o", green])
-        _, (seconds, _, memory), steps = sinter(folder, green, "--to-density 0.7")
+        Run(["sinter", "green", "-q", "-n", particles, *STARTS["affine"][0].split(), "--seed", 1, "-o", green])
+        _, run, steps = sinter(folder, green, "--to-density 0.7")
         newton, iterations = (sum(step[key] for step in steps) for key in ("newton", "conjugate_gradients"))
-        rows.append({"particles": particles, "seconds": seconds, "peak_bytes": memory, "steps": len(steps), "newton": newton,
-                     "conjugate_gradients": iterations, "iterations_per_solve": iterations / newton})
+        rows.append({"particles": particles, "seconds": run.wall, "peak_bytes": run.peak_bytes, "steps": len(steps),
+                     "newton": newton, "conjugate_gradients": iterations, "iterations_per_solve": iterations / newton})
         say("size", **rows[-1])
     return rows
 
 
 def draw(error_rows, size_rows, path):
     starts = [start for start in STARTS if any(row["start"] == start for row in error_rows)]
-    figure, axes = pyplot.subplots(1, len(starts) + 1, figsize=(3.0 * len(starts) + 3.0, 3.4), squeeze=False)
+    figure, axes = pyplot.subplots(1, len(starts) + 1, figsize=(3.0 * len(starts) + 3.0, 3.6), squeeze=False)
+    figure.get_layout_engine().set(rect=(0, 0.08, 1, 0.92))  # the legend of the methods stands below
     axes = axes[0]
     styles = {"implicit, second order": (LINE, "o-"), "implicit, first order": (REFERENCE, "s--"), "explicit": (ACCENT, "^-")}
     for axis, start in zip(axes, starts):
@@ -122,7 +110,8 @@ def draw(error_rows, size_rows, path):
             axis.loglog(*zip(*points), style, color=colour, label=method, markersize=4)
         axis.set(title=f"{start}, {error_rows[0]['particles']:,} particles", xlabel="processor time, s")
     axes[0].set_ylabel("largest relative error of the density")
-    axes[0].legend()
+    if starts:
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="lower center", ncol=len(styles))
     axis = axes[-1]
     counts = [row["particles"] for row in size_rows]
     axis.loglog(counts, [row["seconds"] for row in size_rows], "o-", color=LINE, label="wall time, s", markersize=4)

@@ -29,7 +29,12 @@ setup() {
 with_petsc() { [ -n "${PETSC_PROGRAMS-}" ] || skip "there is no PETSc"; }
 
 # two PROGRAM ARGUMENT...: on two processes. What mpirun says itself is framed by dashes.
-two() { mpirun -n 2 --oversubscribe "$PETSC_PROGRAMS/$1" "${@:2}" 2> >(sed '/^---/,/^---/d; /ORTE_ERROR_LOG/d' >&2); }
+two() {
+    local status=0
+    mpirun -n 2 --oversubscribe "$PETSC_PROGRAMS/$1" "${@:2}" 2>said || status=$?
+    sed '/^---/,/^---/d; /ORTE_ERROR_LOG/d' said >&2
+    return $status
+}
 
 @test "a build without PETSc says how to build one with it" {
     run -2 "$BEND" --solver petsc bonded.kiln
@@ -50,6 +55,16 @@ two() { mpirun -n 2 --oversubscribe "$PETSC_PROGRAMS/$1" "${@:2}" 2> >(sed '/^--
     run -2 --separate-stderr env OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=2 "$BEND"
     assert_equal "$output$stderr" ""
     [ ! -e nothing ]
+}
+
+@test "bench/peers.py measures without PETSc what can be, and says so" {
+    PYTHONDONTWRITEBYTECODE=1 PROGRAMS=$(dirname "$(realpath "$BEND")") run -0 --separate-stderr "$PYTHON" "$ROOT/bench/peers.py" elastic --table \
+        --particles 300 --tolerances 1e-2,1e-6
+    assert_equal "$stderr" "peers: this build has no PETSc (make PETSC=1): its rows are left out"
+    assert_line --regexp "^modulus of a cell, 300 particles$"
+    assert_line --regexp "^ *our own +0\.01 +[0-9.]+e-0[4-9] "
+    assert_line --regexp "^ *our own +1e-06 +[0-9.]+e-(09|1[0-9]) "
+    refute_output --partial "PETSc"
 }
 
 @test "what does not solve linear systems of bonds takes no solver" {
