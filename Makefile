@@ -164,12 +164,16 @@ cli-test: all $(BUILD)/neighbours-present  ## the programs as a user runs them
 	@BUILD=$(BUILD) PYTHON=$(PYTHON) UNIT=0 tests/run.sh
 
 # ---- benchmarks, manual pages -------------------------------------------------------------------------------------------------
-bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines and pictures in build/bench
-	@for name in $(BENCH_NAMES); do echo "== $$name"; $(BUILD)/bench/$$name | tee $(BUILD)/bench/$$name.jsonl; done
-	@for name in $(BENCH_SCRIPTS); do \
-	    echo "== $$name"; \
-	    BUILD=$(abspath $(BUILD)) $(PYTHON) bench/$$name.py -o $(BUILD)/bench/$$name.png | tee $(BUILD)/bench/$$name.jsonl; \
-	done
+# Sizes with which all of it takes some minutes; FULL=1 has those of docs, an hour and 10 GB.
+ifneq ($(FULL),1)
+QUICK_bending   := size slenderness tolerance --largest 30000
+QUICK_sintering := --particles 1000 --tightest 1e-5 --lightest 1e19 --largest 10000
+endif
+
+bench: all $(BENCH_NAMES:%=$(BUILD)/bench/%)  ## speed against error; JSON lines and pictures in build/bench; FULL=1: an hour
+	@$(foreach name,$(BENCH_NAMES),echo "== $(name)"; $(BUILD)/bench/$(name) $(QUICK_$(name)) | tee $(BUILD)/bench/$(name).jsonl;)
+	@$(foreach name,$(BENCH_SCRIPTS),echo "== $(name)"; BUILD=$(abspath $(BUILD)) PROGRAMS=$(abspath $(BIN)) \
+	    $(PYTHON) bench/$(name).py $(QUICK_$(name)) -o $(BUILD)/bench/$(name).png | tee $(BUILD)/bench/$(name).jsonl;)
 
 POST_TOOLS := dem-convert dem-view
 
