@@ -166,6 +166,7 @@ cli-test: all $(BUILD)/neighbours-present  ## the programs as a user runs them
 # ---- benchmarks, manual pages -------------------------------------------------------------------------------------------------
 # Sizes with which all of it takes some minutes; FULL=1 has those of docs, an hour and 10 GB.
 ifneq ($(FULL),1)
+QUICK_chain     := --largest 30000
 QUICK_bending   := size slenderness tolerance --largest 30000
 QUICK_sintering := --particles 1000 --tightest 1e-5 --lightest 1e19 --largest 10000
 endif

@@ -3,12 +3,22 @@ import json
 import os
 import subprocess
 import sys
-import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROGRAMS = os.environ.get("PROGRAMS") or os.path.join(os.environ.get("BUILD", os.path.join(ROOT, "build")), "bin")
 sys.path.insert(0, os.path.join(ROOT, "workflows", "post"))
 
+
+# Starts a program and tells what it took. A program begins with the peak memory of who starts it, so a small process has to.
+STARTER = """
+import os, subprocess, sys, time
+start = time.perf_counter()
+process = subprocess.Popen(sys.argv[2:])
+_, status, usage = os.wait4(process.pid, 0)
+wall = time.perf_counter() - start
+told = f"{wall} {usage.ru_utime + usage.ru_stime} {usage.ru_maxrss * 1024} {os.waitstatus_to_exitcode(status)}"
+os.write(int(sys.argv[1]), told.encode())
+"""
 
 silent = False  # nothing is printed as JSON
 
@@ -27,19 +37,19 @@ class Run:
     """
 
     def __init__(self, command, environment=None, before=()):
-        start = time.perf_counter()
         words = [str(word) for word in command]
         if "/" not in words[0]:
             words[0] = os.path.join(PROGRAMS, words[0])
-        process = subprocess.Popen([*before, *words], stdout=subprocess.PIPE, env=environment)
-        self.output = process.stdout.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            raise SystemExit(f"{' '.join([*before, *words])}: status {process.returncode}")
-        self.wall = time.perf_counter() - start
-        self.processor = usage.ru_utime + usage.ru_stime
-        self.peak_bytes = usage.ru_maxrss * 1024
+        ear, mouth = os.pipe()
+        process = subprocess.Popen([sys.executable, "-I", "-S", "-c", STARTER, str(mouth), *before, *words],
+                                   stdout=subprocess.PIPE, env=environment, pass_fds=(mouth,))
+        os.close(mouth)
+        self.output = process.communicate()[0]
+        with os.fdopen(ear) as told:
+            wall, processor, peak, status = told.read().split()
+        if status != "0":
+            raise SystemExit(f"{' '.join([*before, *words])}: status {status}")
+        self.wall, self.processor, self.peak_bytes = float(wall), float(processor), int(peak)
 
     def document(self):
         return json.loads(self.output)
