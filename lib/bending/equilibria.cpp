@@ -9,6 +9,7 @@ namespace {
 
 constexpr double seating_share = 1e-9;    // of the greatest force
 constexpr double loose_tolerance = 1e-4;  // of equilibria that only tell how stiff the bar is
+constexpr double guess_tolerance = 1e-2;  // of one whose force may be several times too large
 constexpr double watched_gap = 0.2;       // of the mean radius: wider gaps do not close under small deflections
 
 /// Pairs without a bond so near that they may come to touch in the test.
@@ -57,6 +58,10 @@ Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const O
 double Equilibria::trial_tolerance() const { return std::max(loose_tolerance, tolerance_); }
 
 Level Equilibria::trial(double force, Result& result) { return level_of(problem_.solve(force, trial_tolerance()), result); }
+
+Level Equilibria::guess(double force, Result& result) {
+    return level_of(problem_.solve(force, std::max(guess_tolerance, tolerance_)), result);
+}
 
 Level Equilibria::relaxed(Result& result) { return level_of(problem_.relax(last_.punch_force, trial_tolerance()), result); }
 

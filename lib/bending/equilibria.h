@@ -33,8 +33,9 @@ class Equilibria {
     Equilibria(const Equilibria&) = delete;  // the contact problem refers to the solver
     Equilibria& operator=(const Equilibria&) = delete;
 
-    /// An equilibrium on the way to one that counts: as exact as searches need.
+    /// An equilibrium on the way to one that counts: as exact as searches need, or as a first guess does.
     Level trial(double force, Result& result);
+    Level guess(double force, Result& result);
 
     Level at(double force, Result& result);
 

@@ -14,11 +14,15 @@ namespace {
 constexpr double deflection_tolerance = 1e-6;
 constexpr int max_trials = 12;
 
+/// What an equilibrium is for: the first guess of a force, one near the force sought, or the curve.
+enum class Purpose { guess, trial, curve };
+
 /// The equilibrium under a force that has risen from nothing: at once if the bar is elastic, in the curve's steps if there is
 /// friction.
-Level loaded(Equilibria& levels, double force, bool exact, const Options& options, Result& result) {
+Level loaded(Equilibria& levels, double force, Purpose purpose, const Options& options, Result& result) {
     const auto solved = [&](double share) {
-        return exact ? levels.at(share * force, result) : levels.trial(share * force, result);
+        if (purpose == Purpose::curve) return levels.at(share * force, result);
+        return purpose == Purpose::trial ? levels.trial(share * force, result) : levels.guess(share * force, result);
     };
     if (options.friction == 0.0) return solved(1.0);
     levels.release();
@@ -31,10 +35,10 @@ Level loaded(Equilibria& levels, double force, bool exact, const Options& option
 
 /// Equilibrium at the greatest force: the one given, or the one that gives the deflection required.
 Level peak_level(Equilibria& levels, const Options& options, Result& result) {
-    if (options.max_force > 0.0) return loaded(levels, options.max_force, true, options, result);
+    if (options.max_force > 0.0) return loaded(levels, options.max_force, Purpose::curve, options, result);
     const double required = max_deflection_of(result.specimen, options);
     double force = expected_force(result.specimen, result.fixture, options);
-    Level level = loaded(levels, force, false, options, result);
+    Level level = loaded(levels, force, Purpose::guess, options, result);
     // Secants, at first through the origin. The slope between a trial and an exact equilibrium close to it would be noise.
     double slope = level.point.force / level.point.deflection;
     bool exact = false;
@@ -46,7 +50,7 @@ Level peak_level(Equilibria& levels, const Options& options, Result& result) {
             throw Error("the bar does not bend downwards under the punch, so no force gives the required deflection");
         const Level before = level;
         const bool was_exact = std::exchange(exact, std::abs(missing) <= std::sqrt(deflection_tolerance) * required);
-        level = loaded(levels, force, exact, options, result);
+        level = loaded(levels, force, exact ? Purpose::curve : Purpose::trial, options, result);
         const double covered = level.point.deflection - before.point.deflection;
         if (exact == was_exact && covered != 0.0) slope = (level.point.force - before.point.force) / covered;
     }

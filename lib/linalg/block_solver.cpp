@@ -166,7 +166,8 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
                                              Batch<all>& x, int first, double tolerance, int max_iterations,
                                              const StopRequest& stop) {
     std::array<SolveReport, width> reports;
-    if (x.empty()) x.resize(b.size(), Values<double, all>::Zero());
+    const bool from_zero = x.empty();
+    if (from_zero) x.resize(b.size(), Values<double, all>::Zero());
     const Columns<width, all> loads{b, first}, fields{x, first};
     const PerField<width> size = sum_over_chunks<width>(b.size(), [&](std::size_t begin, std::size_t end) {
         PerField<width> sum = PerField<width>::Zero();
@@ -175,7 +176,10 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
     }).sqrt();
     const PerField<width> goal = tolerance * size;
     Batch<width> r;
-    residual(matrix, fields, loads, r);
+    if constexpr (all == width) {
+        if (from_zero) r = b;
+    }
+    if (r.empty()) residual(matrix, fields, loads, r);
     PerField<width> left = norms<width>(r);
     const auto unfinished = [&] {
         bool any = false;
@@ -194,6 +198,16 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
         report.converged = left[field] <= goal[field];
     }
     return reports;
+}
+
+int solve_roughly(const Springs<double>& matrix, Multigrid& preconditioner, const Vector& b, Vector& x, Vector& r, double tolerance,
+                  int max_iterations, const StopRequest& stop) {
+    std::array<SolveReport, 1> reports;
+    x.assign(b.size(), Vec6::Zero());
+    r = b;
+    const PerField<1> size = norms<1>(b), goal = tolerance * size;
+    if (size[0] > goal[0]) Pass<1, 1>(matrix, preconditioner, x, 0, r).run(size, goal, max_iterations, stop, reports);
+    return reports[0].iterations;
 }
 
 template std::array<SolveReport, 1> solve_springs<1, 1>(const Springs<double>&, Multigrid&, const Batch<1>&, Batch<1>&, int, double,

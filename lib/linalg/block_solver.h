@@ -25,4 +25,9 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
                                              Batch<all>& x, int first, double tolerance, int max_iterations,
                                              const StopRequest& stop = {});
 
+/// x with A x = b - r, where r is at most `tolerance` times b as the iteration has it: nothing is computed apart. Gives the number
+/// of iterations.
+int solve_roughly(const Springs<double>& matrix, Multigrid& preconditioner, const Vector& b, Vector& x, Vector& r, double tolerance,
+                  int max_iterations, const StopRequest& stop = {});
+
 }  // namespace kiln::linalg

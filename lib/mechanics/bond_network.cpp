@@ -165,6 +165,10 @@ BondedBody bonded_body(const State& state, const BondModel& model) {
         if (state.box.periodic[at(axis)]) body.network.period[axis] = state.box.lengths[axis];
     }
     const std::vector<double> coverage = coverage_of(state, body.bond);
+    body.network.pair.reserve(body.bond.size());
+    body.network.vector.reserve(body.bond.size());
+    body.network.radius.reserve(body.bond.size());
+    body.network.stiffness.reserve(body.bond.size());
     for (const std::int32_t row : body.bond) add_bond(body, state, moduli, coverage, row);
     return body;
 }

@@ -27,7 +27,7 @@ Eigen::VectorXd seat_in(ReducedSpace& space, ContactSet& contacts, double force)
     space.add_rigid_motion(Vec3::UnitZ(), Vec3::Zero());
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitX());
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitY());
-    for (std::size_t field = 0; field < space.fields(); ++field) contacts.add_field(space.displacement(field));
+    for (std::size_t field = 0; field < space.fields(); ++field) contacts.add_field(space, field);
     const double overlap = contacts.max_overlap(force);
     Eigen::VectorXd freedoms = Eigen::VectorXd::Zero(space.stiffness().rows());
     freedoms[0] = 2.0 * overlap;
@@ -57,7 +57,7 @@ ContactProblem::ContactProblem(const BondNetwork& network, ElasticSolver& solver
         space_.add_rigid_motion(Vec3::UnitY(), Vec3::Zero());
         space_.add_rigid_motion(Vec3::Zero(), Vec3::UnitZ());
         for (std::size_t field = space_.fields() - 3; field < space_.fields(); ++field) {
-            contacts_.add_field(space_.displacement(field));
+            contacts_.add_field(space_, field);
         }
     }
     release();
@@ -96,7 +96,7 @@ bool ContactProblem::settle(const PunchLoad& load, double tolerance) {
 
 /// What the contacts do to the nodes less what the bonds hold against it.
 Vector ContactProblem::unbalanced(const ContactSet::Forces& forces) const {
-    Vector rest = space_.force(freedoms_);
+    Vector rest = space_.force(solver_, freedoms_);
     for (Vec6& each : rest) each = -each;
     contacts_.add_to_nodes(forces, rest);
     return rest;
@@ -107,8 +107,8 @@ bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
     ReducedSpace::Response response = space_.response(solver_, unbalanced);
     iterations += response.iterations;
     const double unit = contacts_.max_approach(response.displacement);
-    if (!space_.add(solver_, std::move(response), unit)) return false;
-    contacts_.add_field(space_.displacement(space_.fields() - 1));
+    if (!space_.add(solver_, response, unit)) return false;
+    contacts_.add_field(space_, space_.fields() - 1);
     freedoms_.conservativeResize(freedoms_.size() + 1);
     freedoms_[freedoms_.size() - 1] = 0.0;
     return true;
@@ -162,12 +162,12 @@ void ContactProblem::conclude(Equilibrium& state, const ContactSet::Forces& forc
 
 /// Keeps of all elastic fields only what they add up to now: contacts without friction need no more of the past.
 void ContactProblem::join_responses() {
-    ReducedSpace::Field sum = space_.sum_of_responses(freedoms_);
-    const double unit = contacts_.max_approach(sum.displacement);
-    space_.replace_responses(std::move(sum), unit);
+    const Vector sum = space_.sum_of_responses(freedoms_);
+    const double unit = contacts_.max_approach(sum);
+    space_.replace_responses(solver_, sum, unit);
     const auto last = static_cast<Eigen::Index>(space_.fields());
     contacts_.keep_fields(space_.rigid_motions());
-    contacts_.add_field(space_.displacement(space_.fields() - 1));
+    contacts_.add_field(space_, space_.fields() - 1);
     freedoms_.conservativeResize(last + 1);
     freedoms_[last] = unit;
 }

@@ -41,27 +41,27 @@ ContactSet::ContactSet(const BondNetwork& network, const std::vector<WallContact
     }
 }
 
-double ContactSet::approach(const Contact& contact, const Vector& displacement) const {
-    Vec3 moved = displacement[at(contact.node)].head<3>();
-    if (contact.other >= 0) moved -= displacement[at(contact.other)].head<3>();
-    return -contact.push.dot(moved);
+double ContactSet::approach(const Contact& contact, const Moved& moved) const {
+    return -contact.push.dot(Vec3(moved.node.head<3>() - moved.other.head<3>()));
 }
 
 /// Of the node's surface against the other one, m.
-Vec3 ContactSet::slide(const Contact& contact, const Vector& displacement) const {
-    const auto surface = [&](std::int32_t node, const Vec3& arm) -> Vec3 {
-        return displacement[at(node)].head<3>() + displacement[at(node)].tail<3>().cross(arm);
+Vec3 ContactSet::slide(const Contact& contact, const Moved& moved) const {
+    const auto surface = [](const Vec6& node, const Vec3& arm) -> Vec3 {
+        return node.head<3>() + Vec3(node.tail<3>()).cross(arm);
     };
-    Vec3 moved = surface(contact.node, contact.arm);
-    if (contact.other >= 0) moved -= surface(contact.other, contact.other_arm);
-    return moved - contact.push.dot(moved) * contact.push;
+    const Vec3 apart = surface(moved.node, contact.arm) - surface(moved.other, contact.other_arm);
+    return apart - contact.push.dot(apart) * contact.push;
 }
 
 /// What a field does to a contact.
-void ContactSet::add_rows(std::size_t contact, Eigen::Index column, const Vector& displacement) {
-    const auto row = static_cast<Eigen::Index>(contact);
-    approach_(row, column) = approach(contacts_[contact], displacement);
-    if (tangential_.active()) sliding_.block<3, 1>(3 * row, column) = slide(contacts_[contact], displacement);
+void ContactSet::add_rows(std::size_t contact, const ReducedSpace& space, std::size_t field) {
+    const Contact& c = contacts_[contact];
+    const auto row = static_cast<Eigen::Index>(contact), column = static_cast<Eigen::Index>(field) + 1;
+    const Moved moved{space.displacement(field, at(c.node)),
+                      c.other >= 0 ? space.displacement(field, at(c.other)) : Vec6(Vec6::Zero())};
+    approach_(row, column) = approach(c, moved);
+    if (tangential_.active()) sliding_.block<3, 1>(3 * row, column) = slide(c, moved);
 }
 
 /// A contact with its rows, of which that of the punch is filled.
@@ -88,12 +88,10 @@ bool ContactSet::add_closed_pairs(const ReducedSpace& space, const Vector& displ
                                      pair.shear_modulus,
                                      pair.radius_i * arm,
                                      -pair.radius_j * arm};
-               if (approach(contact, displacement) <= pair.gap) return false;
+               if (approach(contact, {displacement[at(pair.i)], displacement[at(pair.j)]}) <= pair.gap) return false;
                add_contact(contact);
                const std::size_t added = contacts_.size() - 1;
-               for (std::size_t k = 0; k < space.fields(); ++k) {
-                   add_rows(added, static_cast<Eigen::Index>(k) + 1, space.displacement(k));
-               }
+               for (std::size_t k = 0; k < space.fields(); ++k) add_rows(added, space, k);
                if (tangential_.active()) {
                    const auto row = static_cast<Eigen::Index>(added);
                    tangential_.add(pair.radius, pair.modulus, pair.shear_modulus, approach_.row(row).dot(kept_) - contact.gap,
@@ -103,11 +101,11 @@ bool ContactSet::add_closed_pairs(const ReducedSpace& space, const Vector& displ
            }) > 0;
 }
 
-void ContactSet::add_field(const Vector& displacement) {
+void ContactSet::add_field(const ReducedSpace& space, std::size_t field) {
     const Eigen::Index column = approach_.cols();
     approach_.conservativeResize(Eigen::NoChange, column + 1);
     sliding_.conservativeResize(Eigen::NoChange, column + 1);
-    for (std::size_t c = 0; c < contacts_.size(); ++c) add_rows(c, column, displacement);
+    for (std::size_t c = 0; c < contacts_.size(); ++c) add_rows(c, space, field);
     kept_.conservativeResize(column + 1);
     kept_[column] = 0.0;
 }
@@ -212,7 +210,10 @@ double ContactSet::max_overlap(double force) const {
 
 double ContactSet::max_approach(const Vector& displacement) const {
     double largest = 0.0;
-    for (const Contact& contact : contacts_) largest = std::max(largest, std::abs(approach(contact, displacement)));
+    for (const Contact& contact : contacts_) {
+        const Vec6 other = contact.other >= 0 ? displacement[at(contact.other)] : Vec6(Vec6::Zero());
+        largest = std::max(largest, std::abs(approach(contact, {displacement[at(contact.node)], other})));
+    }
     return largest;
 }
 

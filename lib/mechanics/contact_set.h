@@ -45,7 +45,7 @@ class ContactSet {
     double max_approach(const Vector& displacement) const;
 
     /// The space has one more field at its end, or only so many of the first ones.
-    void add_field(const Vector& displacement);
+    void add_field(const ReducedSpace& space, std::size_t field);
     void keep_fields(std::size_t fields);
 
     /// This pair may touch from now on.
@@ -74,9 +74,14 @@ class ContactSet {
         Vec3 arm, other_arm;  // from the centres to where they touch, over the rotation length
     };
 
-    double approach(const Contact& contact, const Vector& displacement) const;
-    Vec3 slide(const Contact& contact, const Vector& displacement) const;
-    void add_rows(std::size_t contact, Eigen::Index column, const Vector& displacement);
+    /// What the nodes do that a contact joins.
+    struct Moved {
+        Vec6 node, other;
+    };
+
+    double approach(const Contact& contact, const Moved& moved) const;
+    Vec3 slide(const Contact& contact, const Moved& moved) const;
+    void add_rows(std::size_t contact, const ReducedSpace& space, std::size_t field);
     void add_contact(const Contact& contact);
     Eigen::VectorXd overlaps(const Eigen::VectorXd& freedoms) const;
     Vec3 on_node(const Forces& forces, std::size_t contact) const;

@@ -71,6 +71,21 @@ std::array<linalg::SolveReport, 6> ElasticSolver::solve(const linalg::Batch<6>& 
     return reports;
 }
 
+int ElasticSolver::respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations) {
+    if (other_) {
+        const int iterations = solve(load, displacement, tolerance, max_iterations).iterations;
+        forces(displacement, force);
+        return iterations;
+    }
+    Vector rest;
+    const int iterations =
+        linalg::solve_roughly(matrix_, *preconditioner_, load, displacement, rest, tolerance, max_iterations, stop_);
+    force = load;
+    linalg::add(-1.0, rest, force);
+    force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
+    return iterations;
+}
+
 void ElasticSolver::soften(const BondNetwork& network, std::size_t bond, double share) {
     if (other_) other_->soften(network, bond, share);
     matrix_.soften(bond, share);

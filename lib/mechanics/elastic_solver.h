@@ -34,6 +34,9 @@ class ElasticSolver {
     std::array<linalg::SolveReport, 6> solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
                                              int max_iterations = 1000);
 
+    /// Displacements under nearly a load, to a rough tolerance, and the forces that hold them. Gives the number of iterations.
+    int respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations = 1000);
+
     /// Forces that hold the network in a displacement field: the stiffness matrix without the ground, times the displacement.
     void forces(const Vector& displacement, Vector& force) const;
 

@@ -12,112 +12,176 @@ namespace {
 constexpr double response_tolerance = 0.1;  // of one linear solve; the next one takes up what it leaves
 constexpr double second_pass = 0.1;         // of a response's energy, below which rounding calls for another orthogonalisation
 constexpr double min_novelty = 1e-10;       // of a response's energy, that the space does not have already
+constexpr std::size_t nodes_in_chunk = 256;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// Of the freedoms.
-Eigen::Index place_of(std::size_t field) { return static_cast<Eigen::Index>(field) + 1; }
+std::size_t chunks_of(std::size_t nodes) { return (nodes + nodes_in_chunk - 1) / nodes_in_chunk; }
+
+/// Of a response, among the freedoms.
+Eigen::Index place_of(std::size_t rigid_motions, std::size_t response) {
+    return static_cast<Eigen::Index>(rigid_motions + response) + 1;
+}
 
 }  // namespace
 
-ReducedSpace::ReducedSpace(const BondNetwork& network) : network_(network), stiffness_(Eigen::MatrixXd::Zero(1, 1)) {}
-
-Vector ReducedSpace::displacement(const Eigen::VectorXd& freedoms) const {
-    Vector sum(network_.nodes(), Vec6::Zero());
-    for (std::size_t k = 0; k < fields_.size(); ++k) linalg::add(freedoms[place_of(k)], fields_[k].displacement, sum);
-    return sum;
-}
-
-Vector ReducedSpace::force(const Eigen::VectorXd& freedoms) const {
-    Vector sum(network_.nodes(), Vec6::Zero());
-    for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) linalg::add(freedoms[place_of(k)], fields_[k].force, sum);
-    return sum;
-}
-
-void ReducedSpace::add_rigid_motion(const Vec3& shift, const Vec3& turn) {
-    Vec3 low = network_.position.front(), high = low;
-    for (const Vec3& position : network_.position) {
+ReducedSpace::ReducedSpace(const BondNetwork& network) : network_(network), stiffness_(Eigen::MatrixXd::Zero(1, 1)) {
+    Vec3 low = network.position.front(), high = low;
+    for (const Vec3& position : network.position) {
         low = low.cwiseMin(position);
         high = high.cwiseMax(position);
     }
-    const Vec3 middle = (low + high) / 2.0;
-    const double size = (high - low).norm();
-    Field field{Vector(network_.nodes()), {}};
-    for (std::size_t node = 0; node < network_.nodes(); ++node) {
-        const Vec3 arm = (network_.position[node] - middle) / size;
-        field.displacement[node] << shift + turn.cross(arm), network_.rotation_length / size * turn;
-    }
-    add_field(std::move(field));
-    ++rigid_motions_;
+    middle_ = (low + high) / 2.0;
+    size_ = (high - low).norm();
 }
 
-void ReducedSpace::add_field(Field field) {
-    const Eigen::Index column = stiffness_.cols();
-    stiffness_.conservativeResize(column + 1, column + 1);
-    stiffness_.row(column).setZero();
-    stiffness_.col(column).setZero();
-    fields_.push_back(std::move(field));
-    const Field& added = fields_.back();
-    if (added.force.empty()) return;
-    for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {
-        stiffness_(place_of(k), column) = stiffness_(column, place_of(k)) = linalg::dot(fields_[k].displacement, added.force);
-    }
+Vec6 ReducedSpace::displacement(const RigidMotion& motion, std::size_t node) const {
+    Vec6 displacement;
+    displacement << motion.shift + motion.turn.cross(network_.position[node] - middle_), network_.rotation_length * motion.turn;
+    return displacement;
+}
+
+Vec6 ReducedSpace::displacement(std::size_t field, std::size_t node) const {
+    return field < rigid_.size() ? displacement(rigid_[field], node) : responses_[field - rigid_.size()][node];
+}
+
+Eigen::VectorXd ReducedSpace::amplitudes_of_responses(const Eigen::VectorXd& freedoms) const {
+    return freedoms.tail(static_cast<Eigen::Index>(responses_.size()));
+}
+
+/// What a force on the nodes does on each response, N.
+Eigen::VectorXd ReducedSpace::work(const Vector& force) const {
+    const auto count = static_cast<Eigen::Index>(responses_.size());
+    return sum_chunks(chunks_of(force.size()), Eigen::VectorXd(Eigen::VectorXd::Zero(count)), [&](std::size_t chunk) {
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
+        const std::size_t first = chunk * nodes_in_chunk, last = std::min(force.size(), first + nodes_in_chunk);
+        std::array<Vec6, nodes_in_chunk> field;
+        for (Eigen::Index k = 0; k < count; ++k) {
+            responses_[static_cast<std::size_t>(k)].read(first, last, field.data());
+            for (std::size_t node = first; node < last; ++node) sum[k] += field[node - first].dot(force[node]);
+        }
+        return sum;
+    });
+}
+
+/// Adds the responses times their amplitudes and a factor.
+void ReducedSpace::add_scaled(double factor, const Eigen::VectorXd& amplitudes, Vector& displacement) const {
+    for_chunks(chunks_of(displacement.size()), [&](std::size_t chunk) {
+        const std::size_t first = chunk * nodes_in_chunk, last = std::min(displacement.size(), first + nodes_in_chunk);
+        std::array<Vec6, nodes_in_chunk> field;
+        for (std::size_t k = 0; k < responses_.size(); ++k) {
+            const double amplitude = factor * amplitudes[static_cast<Eigen::Index>(k)];
+            responses_[k].read(first, last, field.data());
+            for (std::size_t node = first; node < last; ++node) displacement[node] += amplitude * field[node - first];
+        }
+    });
+}
+
+Vector ReducedSpace::sum_of_responses(const Eigen::VectorXd& freedoms) const {
+    Vector sum(network_.nodes(), Vec6::Zero());
+    add_scaled(1.0, amplitudes_of_responses(freedoms), sum);
+    return sum;
+}
+
+Vector ReducedSpace::displacement(const Eigen::VectorXd& freedoms) const {
+    Vector sum = sum_of_responses(freedoms);
+    for_rows(
+        sum.size(),
+        [&](std::size_t node) {
+            for (std::size_t k = 0; k < rigid_.size(); ++k)
+                sum[node] += freedoms[static_cast<Eigen::Index>(k) + 1] * displacement(rigid_[k], node);
+        },
+        worth_threads);
+    return sum;
+}
+
+Vector ReducedSpace::force(const ElasticSolver& solver, const Eigen::VectorXd& freedoms) const {
+    Vector force;
+    solver.forces(sum_of_responses(freedoms), force);
+    return force;
+}
+
+void ReducedSpace::add_freedom() {
+    const Eigen::Index size = stiffness_.cols();
+    stiffness_.conservativeResize(size + 1, size + 1);
+    stiffness_.row(size).setZero();
+    stiffness_.col(size).setZero();
+}
+
+void ReducedSpace::add_rigid_motion(const Vec3& shift, const Vec3& turn) {
+    rigid_.push_back({shift, turn / size_});
+    add_freedom();
 }
 
 ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load) const {
     Response response;
     Vector& displacement = response.displacement;
-    response.iterations = solver.solve(load, displacement, response_tolerance).iterations;
+    Vector held;
+    response.iterations = solver.respond(load, displacement, held, response_tolerance);
     response.energy = linalg::dot(displacement, load);
-    const auto responses = static_cast<Eigen::Index>(fields_.size() - rigid_motions_);
+    const auto responses = static_cast<Eigen::Index>(responses_.size());
     const Eigen::LDLT<Eigen::MatrixXd> elastic(stiffness_.bottomRightCorner(responses, responses));
     double rest = 0.0;  // J, that the fields there do not have
     for (int pass = 0; pass == 0 || (pass == 1 && rest < second_pass * response.energy); ++pass) {
-        for (std::size_t k = 0; k < rigid_motions_; ++k) {
-            const Vector& rigid = fields_[k].displacement;
-            linalg::add(-linalg::dot(displacement, rigid) / linalg::dot(rigid, rigid), rigid, displacement);
+        for (const RigidMotion& motion : rigid_) {
+            const auto products = linalg::sum_over_chunks<2>(displacement.size(), [&](std::size_t first, std::size_t last) {
+                linalg::PerField<2> sum = linalg::PerField<2>::Zero();
+                for (std::size_t node = first; node < last; ++node) {
+                    const Vec6 rigid = this->displacement(motion, node);
+                    sum += linalg::PerField<2>(displacement[node].dot(rigid), rigid.squaredNorm());
+                }
+                return sum;
+            });
+            const double amplitude = products[0] / products[1];
+            for_rows(
+                displacement.size(),
+                [&](std::size_t node) { displacement[node] -= amplitude * this->displacement(motion, node); }, worth_threads);
         }
-        Eigen::VectorXd loads(responses);
-        for (Eigen::Index k = 0; k < responses; ++k) {
-            loads[k] = linalg::dot(displacement, fields_[rigid_motions_ + static_cast<std::size_t>(k)].force);
-        }
-        const Eigen::VectorXd amplitudes = responses > 0 ? elastic.solve(loads) : loads;
-        for (Eigen::Index k = 0; k < responses; ++k) {
-            linalg::add(-amplitudes[k], fields_[rigid_motions_ + static_cast<std::size_t>(k)].displacement, displacement);
-        }
+        if (responses == 0) break;
+        if (pass > 0) solver.forces(displacement, held);
+        const Eigen::VectorXd loads = work(held), amplitudes = elastic.solve(loads);
+        add_scaled(-1.0, amplitudes, displacement);
         rest = response.energy - loads.dot(amplitudes);
     }
     return response;
 }
 
-bool ReducedSpace::add(const ElasticSolver& solver, Response response, double unit) {
-    if (!(unit > 0.0)) return false;
-    Field field{std::move(response.displacement), {}};
-    for (Vec6& each : field.displacement) each /= unit;
-    solver.forces(field.displacement, field.force);
-    if (!(linalg::dot(field.displacement, field.force) * unit * unit > min_novelty * response.energy)) return false;
-    add_field(std::move(field));
+bool ReducedSpace::add(const ElasticSolver& solver, const Response& response, double unit) {
+    return unit > 0.0 && add_response(solver, response.displacement, unit, min_novelty * response.energy);
+}
+
+/// A displacement over a unit as a field; false if its energy is not above the least.
+bool ReducedSpace::add_response(const ElasticSolver& solver, const Vector& displacement, double unit, double min_energy) {
+    CompactField field(displacement.size());
+    Vector rounded(displacement.size()), force;
+    for_rows(
+        displacement.size(),
+        [&](std::size_t node) {
+            field.set(node, displacement[node] / unit);
+            rounded[node] = field[node];
+        },
+        worth_threads);
+    solver.forces(rounded, force);
+    const double energy = linalg::dot(rounded, force);
+    if (!(energy * unit * unit > min_energy)) return false;
+    const Eigen::VectorXd shared = work(force);
+    const auto responses = static_cast<Eigen::Index>(responses_.size());
+    add_freedom();
+    stiffness_.col(stiffness_.cols() - 1).segment(stiffness_.rows() - 1 - responses, responses) = shared;
+    stiffness_.row(stiffness_.rows() - 1).segment(stiffness_.rows() - 1 - responses, responses) = shared.transpose();
+    stiffness_(stiffness_.rows() - 1, stiffness_.cols() - 1) = energy;
+    responses_.push_back(std::move(field));
     return true;
 }
 
 void ReducedSpace::remove_last() {
-    fields_.pop_back();
+    responses_.pop_back();
     stiffness_.conservativeResize(stiffness_.rows() - 1, stiffness_.cols() - 1);
 }
 
-ReducedSpace::Field ReducedSpace::sum_of_responses(const Eigen::VectorXd& freedoms) const {
-    Field sum{Vector(network_.nodes(), Vec6::Zero()), force(freedoms)};
-    for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {
-        linalg::add(freedoms[place_of(k)], fields_[k].displacement, sum.displacement);
-    }
-    return sum;
-}
-
-void ReducedSpace::replace_responses(Field sum, double unit) {
-    while (fields_.size() > rigid_motions_) remove_last();
-    for (Vec6& each : sum.displacement) each /= unit;
-    for (Vec6& each : sum.force) each /= unit;
-    add_field(std::move(sum));
+void ReducedSpace::replace_responses(const ElasticSolver& solver, const Vector& sum, double unit) {
+    while (!responses_.empty()) remove_last();
+    add_response(solver, sum, unit, -1.0);
 }
 
 void ReducedSpace::soften(std::size_t bond, double share) {
@@ -125,20 +189,15 @@ void ReducedSpace::soften(std::size_t bond, double share) {
     const BondBlocks blocks = bond_blocks(network_, bond);
     const double lost = 1.0 - share;
     std::vector<Vec6> on_i, on_j;  // what the lost part of the bond held in each response
-    for (std::size_t k = rigid_motions_; k < fields_.size(); ++k) {
-        Field& field = fields_[k];
-        const Vec6 &first = field.displacement[i], &second = field.displacement[j];
+    for (const CompactField& field : responses_) {
+        const Vec6 first = field[i], second = field[j];
         on_i.emplace_back(lost * (blocks.ii * first + blocks.ij * second));
         on_j.emplace_back(lost * (blocks.ij.transpose() * first + blocks.jj * second));
-        field.force[i] -= on_i.back();
-        field.force[j] -= on_j.back();
     }
     for (std::size_t a = 0; a < on_i.size(); ++a) {
-        const Field& field = fields_[rigid_motions_ + a];
-        for (std::size_t b = 0; b < on_i.size(); ++b) {
-            stiffness_(place_of(rigid_motions_ + a), place_of(rigid_motions_ + b)) -=
-                field.displacement[i].dot(on_i[b]) + field.displacement[j].dot(on_j[b]);
-        }
+        const Vec6 first = responses_[a][i], second = responses_[a][j];
+        for (std::size_t b = 0; b < on_i.size(); ++b)
+            stiffness_(place_of(rigid_.size(), a), place_of(rigid_.size(), b)) -= first.dot(on_i[b]) + second.dot(on_j[b]);
     }
 }
 

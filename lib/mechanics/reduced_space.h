@@ -4,20 +4,23 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mechanics/compact_field.h"
 #include "mechanics/elastic_solver.h"
 
 namespace kiln::mechanics {
 
 /// Freedoms are the travel of a punch, which moves no node, and then the amplitudes of the fields, m. The first fields are rigid
-/// motions; the others are responses of the bonds to forces, orthogonal in energy to each other and free of rigid motion.
+/// motions; the others are responses of the bonds to forces, nearly orthogonal in energy to each other and free of rigid motion.
+/// What forces hold a field is not kept: a product with the bonds gives it back.
 class ReducedSpace {
    public:
     /// The network must outlive the space.
     explicit ReducedSpace(const BondNetwork& network);
 
-    std::size_t fields() const { return fields_.size(); }
-    std::size_t rigid_motions() const { return rigid_motions_; }
-    const Vector& displacement(std::size_t field) const { return fields_[field].displacement; }
+    std::size_t fields() const { return rigid_.size() + responses_.size(); }
+    std::size_t rigid_motions() const { return rigid_.size(); }
+    /// Of a node in a field.
+    Vec6 displacement(std::size_t field, std::size_t node) const;
 
     /// N/m, freedom by freedom; zero for the punch and for rigid motions.
     const Eigen::MatrixXd& stiffness() const { return stiffness_; }
@@ -26,7 +29,7 @@ class ReducedSpace {
     /// Of every node.
     Vector displacement(const Eigen::VectorXd& freedoms) const;
     /// N, on every node, that holds the bonds.
-    Vector force(const Eigen::VectorXd& freedoms) const;
+    Vector force(const ElasticSolver& solver, const Eigen::VectorXd& freedoms) const;
 
     /// A shift and a turn about the middle of the network, both of the size that the network has. To come before all responses.
     void add_rigid_motion(const Vec3& shift, const Vec3& turn);
@@ -39,26 +42,34 @@ class ReducedSpace {
     /// What the bonds do under forces on the nodes (N), less what the space has of it.
     Response response(ElasticSolver& solver, const Vector& load) const;
     /// Takes a response as a field whose unit is so many of its own; false if there is next to nothing in it.
-    bool add(const ElasticSolver& solver, Response response, double unit);
+    bool add(const ElasticSolver& solver, const Response& response, double unit);
     void remove_last();
 
-    struct Field {
-        Vector displacement, force;  // force: stiffness times displacement, N; empty for a rigid motion
-    };
     /// What all responses add up to now.
-    Field sum_of_responses(const Eigen::VectorXd& freedoms) const;
+    Vector sum_of_responses(const Eigen::VectorXd& freedoms) const;
     /// Takes their sum, divided by the unit, in the place of all responses.
-    void replace_responses(Field sum, double unit);
+    void replace_responses(const ElasticSolver& solver, const Vector& sum, double unit);
 
     /// Leaves this share of a bond's stiffness, which the network still has whole.
     void soften(std::size_t bond, double share);
 
    private:
-    void add_field(Field field);
+    struct RigidMotion {
+        Vec3 shift, turn;  // the turn over the size of the network
+    };
+
+    Vec6 displacement(const RigidMotion& motion, std::size_t node) const;
+    Eigen::VectorXd work(const Vector& force) const;
+    void add_scaled(double factor, const Eigen::VectorXd& amplitudes, Vector& displacement) const;
+    Eigen::VectorXd amplitudes_of_responses(const Eigen::VectorXd& freedoms) const;
+    void add_freedom();
+    bool add_response(const ElasticSolver& solver, const Vector& displacement, double unit, double min_energy);
 
     const BondNetwork& network_;
-    std::vector<Field> fields_;
-    std::size_t rigid_motions_ = 0;
+    Vec3 middle_;
+    double size_;
+    std::vector<RigidMotion> rigid_;
+    std::vector<CompactField> responses_;
     Eigen::MatrixXd stiffness_;
 };
 
