@@ -26,6 +26,9 @@ setup() {
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 }
 
+# Of `make PETSC=1 test` these programs have it already.
+without_petsc() { "$BEND" --solver petsc nonesuch 2>&1 | grep -q "no PETSc" || skip "this build has PETSc"; }
+
 with_petsc() { [ -n "${PETSC_PROGRAMS-}" ] || skip "there is no PETSc"; }
 
 # two PROGRAM ARGUMENT...: on two processes. What mpirun says itself is framed by dashes.
@@ -37,6 +40,7 @@ two() {
 }
 
 @test "a build without PETSc says how to build one with it" {
+    without_petsc
     run -2 "$BEND" --solver petsc bonded.kiln
     assert_output "bend: --solver: this build has no PETSc; make PETSC=1 builds the programs with it; see bend --help"
     run -2 "$ANALYZE" elastic --solver petsc bonded.kiln
@@ -44,6 +48,7 @@ two() {
 }
 
 @test "several processes that would all do the same work are refused, by one of them" {
+    without_petsc
     for names in "OMPI_COMM_WORLD_RANK OMPI_COMM_WORLD_SIZE" "PMI_RANK PMI_SIZE" "PMIX_RANK SLURM_STEP_NUM_TASKS"; do
         read -r rank size <<<"$names"
         for program in "$SINTER green -n 10 -o nothing" "$BEND -o nothing" "$ANALYZE density"; do
@@ -58,6 +63,7 @@ two() {
 }
 
 @test "bench/peers.py measures without PETSc what can be, and says so" {
+    without_petsc
     PYTHONDONTWRITEBYTECODE=1 PROGRAMS=$(dirname "$(realpath "$BEND")") run -0 --separate-stderr "$PYTHON" "$ROOT/bench/peers.py" elastic --table \
         --particles 300 --tolerances 1e-2,1e-6
     assert_equal "$stderr" "peers: this build has no PETSc (make PETSC=1): its rows are left out"
@@ -150,7 +156,7 @@ two() {
     export SLURM_CONF="$PWD/slurm/slurm.conf"
     run -0 --separate-stderr srun -n 2 --mpi=pmix "$PETSC_PROGRAMS/analyze" elastic --solver petsc --tolerance 1e-10 bonded.kiln
     diff <(echo "$output") cell.json
-    run -2 --separate-stderr srun -n 2 --mpi=pmix "$ANALYZE" elastic bonded.kiln
+    run -2 --separate-stderr srun -n 2 --mpi=pmix "$PETSC_PROGRAMS/analyze" elastic bonded.kiln
     assert_equal "$(grep -c "2 processes were started" <<<"$stderr")" 1
     printf '#!/bin/bash\n%s\n' "mpirun $PETSC_PROGRAMS/analyze elastic --solver petsc --tolerance 1e-10 -o $PWD/job.json $PWD/bonded.kiln" >job.sh
     sbatch -W --ntasks=2 --output=job.log job.sh || fail "$(cat job.log)"
