@@ -17,6 +17,27 @@ constexpr double limit_stiffness = 100.0;  // of the spring at a limit, over the
                                            // yields by a part in a hundred of what the contact would do without
 constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
 
+/// Bounds of how much pairs close under a motion, without looking at where their particles are.
+class ApproachBound {
+   public:
+    ApproachBound(const Motion& motion, double max_radius)
+        : travel_(motion.displacement.size() / 3), strain_(motion.strain.cwiseAbs().maxCoeff()), touching_(4.0 * max_radius) {
+        for_rows(travel_.size(),
+                 [&](std::size_t row) { travel_[row] = Eigen::Map<const Vec3>(&motion.displacement[3 * row]).norm(); });
+    }
+
+    /// overlap: that of the pair before the motion, m, negative for a gap.
+    double operator()(const Pair& pair, double overlap) const {
+        return rounding * (travel_[static_cast<std::size_t>(pair.i)] + travel_[static_cast<std::size_t>(pair.j)] +
+                           strain_ * (touching_ - overlap));
+    }
+
+   private:
+    static constexpr double rounding = 1.0 + 1e-9;
+    std::vector<double> travel_;  // of each particle, m
+    double strain_, touching_;  // touching_: distance of centres without overlap that no pair exceeds, m, whatever its neck adds
+};
+
 }  // namespace
 
 double Candidates::max_neck(std::size_t kind, double first, double second) const {
@@ -81,25 +102,38 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     const auto expected = [&](const Pair& pair) {
         return &guess == &other ? end_overlap(pair, guess) : std::max(end_overlap(pair, guess), end_overlap(pair, other));
     };
+    const ApproachBound bound(guess, body_.max_radius());
+    const ApproachBound other_bound = &guess == &other ? bound : ApproachBound(other, body_.max_radius());
+    const auto may_close = [&](const Pair& pair, double start) {
+        return candidate_motion * std::max(bound(pair, start), other_bound(pair, start));
+    };
     const std::vector<Pair>& list = body_.pairs();
     const std::vector<Pair> before = keep ? std::move(chosen_) : std::vector<Pair>{};
     std::vector<std::uint8_t> kind(list.size());  // 0 out, 1 apart, 2 touching, 3 sticking
+    std::vector<double> overlap(list.size());
     for_rows(list.size(), [&](std::size_t row) {
         const Pair& pair = list[row];
-        const double start = body_.overlap(pair);
+        const double start = overlap[row] = body_.overlap(pair);
         if (sticks(body_, kinetics_, pair))
             kind[row] = 3;
         else if (start >= 0.0)
             kind[row] = 2;
         else if (keep && std::binary_search(before.begin(), before.end(), pair))
             kind[row] = 1;
-        else if (start + reach > 0.0 || start + candidate_motion * (expected(pair) - start) + reach > 0.0)
+        else if (start + reach > 0.0)
+            kind[row] = 1;
+        else if (start + may_close(pair, start) + reach > 0.0 &&
+                 start + candidate_motion * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;
     });
     for (auto* part : {&pairs_, &chosen_, &left_out_, &touching_, &sticking_}) part->clear();
+    left_out_overlap_.clear();
     for (std::size_t row = 0; row < list.size(); ++row) {
         (kind[row] == 0 ? left_out_ : chosen_).push_back(list[row]);
-        if (kind[row] == 0) continue;
+        if (kind[row] == 0) {
+            left_out_overlap_.push_back(overlap[row]);
+            continue;
+        }
         if (kind[row] >= 2) touching_.push_back(list[row]);
         (kind[row] == 3 ? sticking_ : pairs_).push_back(list[row]);
     }
@@ -114,7 +148,14 @@ bool Candidates::complete(const Motion& motion) const {
             return static_cast<std::size_t>(end_overlap(pairs[row], motion) > harmless);
         }, std::plus());
     };
-    if (lists_ == body_.lists()) return touching_among(left_out_) == 0;
+    if (lists_ == body_.lists()) {
+        const ApproachBound bound(motion, body_.max_radius());
+        return join_rows(left_out_.size(), std::size_t{0}, [&](std::size_t row) {
+            const Pair& pair = left_out_[row];
+            const double start = left_out_overlap_[row];
+            return static_cast<std::size_t>(start + bound(pair, start) > harmless && end_overlap(pair, motion) > harmless);
+        }, std::plus()) == 0;
+    }
     return touching_among(body_.pairs()) == touching_among(chosen_);  // a new list holds the chosen as well
 }
 

@@ -51,6 +51,7 @@ class Candidates {
     physics::ContactConstants constants_;
     bool coarsens_;
     std::vector<Pair> pairs_, chosen_, left_out_, touching_, sticking_;
+    std::vector<double> left_out_overlap_;  // m, before the step, of each pair left out
     int lists_ = 0;  // of the packing, when pairs were chosen
     std::vector<PairStep> steps_;
     double unit_ = 1.0;

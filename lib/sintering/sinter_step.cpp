@@ -82,8 +82,8 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       settings_(settings),
       network_(box, position, pairs),
       coarse_(coarse_spaces_of(box, position, pairs, step)),
-      rows_(pairs.size()),
-      entries_(network_.pair.size()),
+      rows_(std::make_unique_for_overwrite<PairForce[]>(pairs.size())),
+      entries_(std::make_unique_for_overwrite<PairForce[]>(network_.pair.size())),
       total_(3 * position.size()),
       driving_forces_(position.size()),
       unbalanced_(position.size()),
@@ -155,7 +155,7 @@ void SinterStep::take_geometry() {
 void SinterStep::start_limits() {
     if (!limited_) return;
     double stiffness = 0.0;
-    for (const PairForce& pair : rows_)
+    for (const PairForce& pair : std::span(rows_.get(), step_.size()))
         stiffness += pair.driving > 0.0 ? pair.cubic * physics::viscosity_shape(pair.isolated_end) : 0.0;
     const double spring = limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1));
     limits_.reset(step_.size());
@@ -202,15 +202,15 @@ void SinterStep::forces(const Motion& motion, bool secant) {
 }
 
 double SinterStep::imbalance(const Motion& motion) const {
-    std::vector<double> exerted(rows_.size());
-    for_rows(rows_.size(), [&](std::size_t row) {
+    std::vector<double> exerted(step_.size());
+    for_rows(step_.size(), [&](std::size_t row) {
         // Of a pair that touches for a part of the step the whole sintering force: the part may be next to nothing.
         const double approach = -rows_[row].normal.dot(relative(row, motion));
         const double resistance = pair_resistance(rows_[row].cubic, rows_[row].overlap, approach);
         exerted[row] = step_[row].force + std::abs(resistance) + (limits_.any() ? limits_.reaction(row, approach) : 0.0);
     });
     Vec3 on_box = pressure_volume_.cwiseAbs();
-    for (std::size_t row = 0; row < rows_.size(); ++row)
+    for (std::size_t row = 0; row < step_.size(); ++row)
         on_box += exerted[row] * rows_[row].normal.cwiseProduct(branch_[row]).cwiseAbs();
     // On the box: what its axes share out among those that strain together.
     on_box = settings_.allowed_strain.cwiseAbs() * on_box;

@@ -108,7 +108,7 @@ class SinterStep {
     std::variant<std::unique_ptr<TangentSolver<float>>, std::unique_ptr<TangentSolver<double>>> solver_;
     bool limited_ = false;  // any pair
     UnilateralConstraints limits_;
-    std::vector<PairForce> rows_, entries_;  // of the pairs, and in the order of the network
+    std::unique_ptr<PairForce[]> rows_, entries_;  // of the pairs, and in the order of the network
     std::vector<Vec3> branch_;               // a row a pair, m
     std::vector<double> total_;
     Motion driving_forces_, unbalanced_, direction_;  // driving_forces_: the driving forces alone

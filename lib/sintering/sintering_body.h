@@ -40,6 +40,7 @@ class SinteringBody {
     double density() const { return density_; }        // relative, over the box
     const Vec3& strain() const { return strain_; }      // logarithmic, since the start
     double mean_radius() const { return mean_radius_; }  // m, that of the mean volume
+    double max_radius() const { return max_radius_; }    // m
     const std::vector<double>& first_radius() const { return first_radius_; }  // m, that each particle came in with
 
     /// Pairs that touch or may come to touch while each particle has margin left to travel; sorted.
