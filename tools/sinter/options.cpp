@@ -66,7 +66,7 @@ constexpr const char* footer =
     "  sinter --temperature 1200C --to-density 0.88 --checkpoint run.kiln --resume -o fired.kiln \\\n"
     "      --history history.jsonl green.kiln";
 
-constexpr double solver_share = 30.0;  // tolerance of a step's motion over that of the run: the density feels its square
+constexpr double solver_share = 20.0;  // tolerance of a step's motion over that of the run: the density feels its square
 
 void check_list(const std::vector<double>& values, double above, double below, const std::string& option) {
     for (const double value : values)
