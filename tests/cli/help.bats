@@ -15,7 +15,7 @@ help_of() { COLUMNS=100 "$@" --help; }
 examples_of() { help_of "$@" | sed -nE '/^[Ee]xamples?:$/,$ { /^ / p }'; }
 
 setup_file() {
-    export PARTICLES=400 FILES="$BATS_FILE_TMPDIR/files" PYTHONDONTWRITEBYTECODE=1 OMP_NUM_THREADS=1
+    export PARTICLES=500 FILES="$BATS_FILE_TMPDIR/files" PYTHONDONTWRITEBYTECODE=1 OMP_NUM_THREADS=1
     mkdir -p "$BATS_FILE_TMPDIR/bin" "$FILES"
     for name in SINTER BONDIFY BEND ANALYZE; do ln -s "$(realpath "${!name}")" "$BATS_FILE_TMPDIR/bin/${name,,}"; done
     ln -s "$ROOT"/workflows/post/dem-{convert,view} "$BATS_FILE_TMPDIR/bin/"
