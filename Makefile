@@ -9,6 +9,8 @@ MAKEFLAGS += --jobs=$(shell nproc)
 endif
 
 BUILD    ?= build
+# Below this folder a build has one name, however it is called: what objects depend on is kept by their names.
+override BUILD := $(patsubst $(CURDIR)/%,%,$(abspath $(BUILD)))
 PREFIX   ?= /usr/local
 PYTHON   ?= /usr/bin/python3
 CXX      ?= g++
