@@ -11,7 +11,6 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr std::size_t max_fields = 120;
-constexpr std::size_t fields_of_loads = 24;       // of loads one after the other, and
 constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before their sum takes their place
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
 constexpr double min_progress = 0.5;              // residual with a field over that without it, below that
@@ -117,7 +116,6 @@ bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
 
 /// Where rounding has the last word, a field no longer helps: it is taken out again, since it would spoil the space.
 Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
-    if (!contacts_.friction() && space_.fields() > fields_of_loads) join_responses();
     Equilibrium state;
     Eigen::VectorXd before;  // freedoms before the last field was added; empty if none was
     double before_residual = 0.0;
