@@ -11,13 +11,12 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "common"))
 import measure  # noqa: E402
-from measure import PROGRAMS, Run  # noqa: E402
+from measure import PROGRAMS, Run, run_cases  # noqa: E402
 from style import ACCENT, LINE, REFERENCE, pyplot, save  # noqa: E402
 
 DIAMETER = 100e-9  # m, of the particles before they are pressed
@@ -222,12 +221,7 @@ def main():
     parser.add_argument("--seeds", default="1,2", help="packings of each of those sizes")
     parser.add_argument("--bonding", default="", help="options of bondify in the case thickness, as in '--bonding=--method=necks'")
     given = parser.parse_args()
-    if unknown := set(given.cases) - set(CASES):
-        parser.error(f"no case {', '.join(sorted(unknown))}; there are {', '.join(CASES)}")
-    found = {}
-    for case in given.cases:
-        with tempfile.TemporaryDirectory() as folder:
-            found[case] = CASES[case][0](folder, given)
+    found = run_cases(CASES, parser, given)
     if given.output:
         draw(found, given.output)
 

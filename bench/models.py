@@ -6,10 +6,9 @@ moduli  a cell's modulus on grids of voxels, alone and extrapolated, and by spri
 import argparse
 import os
 import sys
-import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "common"))
-from measure import Run, alone, say  # noqa: E402
+from measure import Run, alone, run_cases, say  # noqa: E402
 import kiln  # noqa: E402
 import numpy  # noqa: E402
 from style import ACCENT, LINE, REFERENCE, pyplot, save  # noqa: E402
@@ -98,12 +97,7 @@ def main():
     parser.add_argument("--bonds", type=int, default=3000, help="particles of the case bonds")
     parser.add_argument("--moduli", type=int, default=100, help="particles of the case moduli")
     given = parser.parse_args()
-    if unknown := set(given.cases) - set(CASES):
-        parser.error(f"no case {', '.join(sorted(unknown))}; there are {', '.join(CASES)}")
-    found = {}
-    for case in given.cases:
-        with tempfile.TemporaryDirectory() as folder:
-            found[case] = CASES[case][0](folder, given)
+    found = run_cases(CASES, parser, given)
     if given.output:
         figure, panels = pyplot.subplots(1, len(found), figsize=(4.6 * len(found), 3.4), squeeze=False)
         for axes, (case, rows) in zip(panels[0], found.items()):

@@ -3,6 +3,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROGRAMS = os.environ.get("PROGRAMS") or os.path.join(os.environ.get("BUILD", os.path.join(ROOT, "build")), "bin")
@@ -53,6 +54,17 @@ class Run:
 
     def document(self):
         return json.loads(self.output)
+
+
+def run_cases(cases, parser, given):
+    """The rows of each case in given.cases. cases: by name, what measures it in a folder, first, and what draws it."""
+    if unknown := set(given.cases) - set(cases):
+        parser.error(f"no case {', '.join(sorted(unknown))}; there are {', '.join(cases)}")
+    found = {}
+    for case in given.cases:
+        with tempfile.TemporaryDirectory() as folder:
+            found[case] = cases[case][0](folder, given)
+    return found
 
 
 def alone():
