@@ -87,8 +87,4 @@ void add(double factor, const Vector& x, Vector& y) {
     for_rows(x.size(), [&](std::size_t i) { y[i] += factor * x[i]; }, worth_threads);
 }
 
-void combine(const Vector& x, double factor, Vector& y) {
-    for_rows(x.size(), [&](std::size_t i) { y[i] = x[i] + factor * y[i]; }, worth_threads);
-}
-
 }  // namespace kiln::linalg

@@ -101,7 +101,4 @@ double norm(const Vector& x);
 /// y += factor x.
 void add(double factor, const Vector& x, Vector& y);
 
-/// y = x + factor y.
-void combine(const Vector& x, double factor, Vector& y);
-
 }  // namespace kiln::linalg
