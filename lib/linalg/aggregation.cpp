@@ -1,7 +1,10 @@
 // aggregation.cpp: greedy aggregates and their rigid-body prolongation.
 #include "linalg/aggregation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -10,6 +13,36 @@ namespace kiln::linalg {
 namespace {
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
+
+/// Nodes breadth first, a front that starts at the first node and moves from neighbours to neighbours.
+std::vector<std::int32_t> along_front(const Couplings& couplings) {
+    const std::size_t nodes = couplings.begin.size() - 1;
+    std::vector<std::int32_t> order;
+    order.reserve(nodes);
+    std::vector<bool> reached(nodes, false);
+    const auto reach = [&](std::int32_t node) {
+        if (reached[at(node)]) return;
+        reached[at(node)] = true;
+        order.push_back(node);
+    };
+    for (std::size_t first = 0; first < nodes; ++first) {
+        std::size_t next = order.size();
+        reach(static_cast<std::int32_t>(first));
+        for (; next < order.size(); ++next)
+            for (const Coupling& neighbour : couplings.of(at(order[next]))) reach(neighbour.node);
+    }
+    return order;
+}
+
+/// The same aggregates in the order of their roots.
+Aggregates by_root(Aggregates aggregates) {
+    std::vector<std::int32_t> number(aggregates.of.size(), 0);  // of a root
+    for (const std::int32_t root : aggregates.root) number[at(root)] = 1;
+    std::exclusive_scan(number.begin(), number.end(), number.begin(), 0);
+    for (std::int32_t& aggregate : aggregates.of) aggregate = number[at(aggregates.root[at(aggregate)])];
+    std::sort(aggregates.root.begin(), aggregates.root.end());
+    return aggregates;
+}
 
 }  // namespace
 
@@ -52,7 +85,7 @@ Aggregates find_aggregates(const Couplings& couplings, int rings) {
             if (aggregates.of[at(neighbour.node)] == aggregate) take_free_neighbours(neighbour.node);
     };
     // Nodes none of whose neighbours is taken begin an aggregate.
-    for (std::int32_t node = 0; node < nodes; ++node) {
+    for (const std::int32_t node : along_front(couplings)) {
         bool free = aggregates.of[at(node)] < 0;
         for (const Coupling& neighbour : couplings.of(at(node))) free = free && aggregates.of[at(neighbour.node)] < 0;
         if (free) begin_at(node);
@@ -72,7 +105,7 @@ Aggregates find_aggregates(const Couplings& couplings, int rings) {
     for (std::int32_t node = 0; node < nodes; ++node) {
         if (aggregates.of[at(node)] < 0) begin_at(node);
     }
-    return aggregates;
+    return by_root(std::move(aggregates));
 }
 
 Mat6 rigid_motion(const Vec3& arm) {

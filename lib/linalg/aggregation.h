@@ -27,7 +27,9 @@ using Couplings = Grouping<Coupling>;
 Couplings couplings_of(const BlockMatrix& matrix);
 Couplings couplings_of(const Springs<double>& matrix);
 
-/// Groups of a node and its neighbours, in the order of the nodes; rings: 1, or 2 where neighbours of neighbours belong to it.
+/// Groups of a node and its neighbours, in the order of the nodes; rings: 1, or 2 where neighbours of neighbours belong to it. They
+/// are packed against each other along a front that moves through the body, whatever the order of the nodes: with roots along a
+/// space-filling curve more nodes are left between them, and conjugate gradients take a sixth more iterations.
 Aggregates find_aggregates(const Couplings& couplings, int rings);
 
 /// Block of a rigid motion: displacement and rotation at `arm` from a point that moves and turns by the six values.

@@ -15,6 +15,11 @@ inline const bool has_wide_registers = (__builtin_cpu_init(), __builtin_cpu_supp
 inline constexpr bool has_wide_registers = false;
 #endif
 
+template <typename Values>
+KILN_INLINE void expect(const Values& values) {
+    for (std::size_t byte = 0; byte < sizeof values; byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(&values) + byte);
+}
+
 /// One or three fields among those of a batch: column `first` onwards.
 template <int width, int all>
 struct Columns {
@@ -45,6 +50,17 @@ KILN_INLINE Freedoms<Real, width> motion_at(const std::vector<Freedoms<float, wi
     const Narrow& from = reinterpret_cast<const Narrow&>(motions[node]);
     for (int k = 0; k < Freedoms<Real, width>::size / 4; ++k) to[k] = __builtin_convertvector(from[k], Four<Real>);
     return motion;
+}
+
+/// Asks for a node's motion before it is needed.
+template <int width, int all>
+KILN_INLINE void expect_motion(const Columns<width, all>& columns, std::size_t node) {
+    expect(columns.batch[node]);
+}
+
+template <typename Real, int width>
+KILN_INLINE void expect_motion(const std::vector<Freedoms<Real, width>>& motions, std::size_t node) {
+    expect(motions[node]);
 }
 
 /// Nodes are cut into chunks of fixed size. A spring inside a chunk is computed once for both of its nodes; one between two chunks
@@ -105,6 +121,11 @@ class Springs {
     }
 
    private:
+    /// Springs before its own at which a node's motion is asked for: that long memory may take.
+    static constexpr std::size_t springs_ahead = 24;
+
+    static std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
     template <typename Other>
     friend class Springs;
 
@@ -119,12 +140,14 @@ class Springs {
         const auto first = static_cast<std::uint32_t>(c.first_node), count = static_cast<std::uint32_t>(c.last_node) - first;
         for (std::size_t k = c.first_spring; k < c.last_spring; ++k) {
             const Spring<Real>& spring = springs_[k];
+            expect_motion(motions, at(springs_[std::min(k + springs_ahead, c.last_spring - 1)].second));
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
             add_force<Real, width>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[i - first],
                                    sums[std::min(j - first, count)]);
         }
         for (std::size_t k = c.first_incoming; k < c.last_incoming; ++k) {
             const Spring<Real>& spring = springs_[incoming_[k]];
+            expect_motion(motions, at(springs_[incoming_[std::min(k + springs_ahead, c.last_incoming - 1)]].first));
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
             add_force<Real, width>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[count],
                                    sums[j - first]);

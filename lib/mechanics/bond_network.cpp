@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "core/spatial_order.h"
 #include "mechanics/connectivity.h"
 #include "physics/materials.h"
 #include "physics/solid_law.h"
@@ -65,13 +66,11 @@ std::vector<std::int32_t> carrying_bonds(const State& state) {
     return rows;
 }
 
-/// All particles by rising x.
-std::vector<std::int32_t> along_x(const Particles& particles) {
-    std::vector<std::int32_t> order(particles.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::int32_t a, std::int32_t b) { return particles.position[at(a)][0] < particles.position[at(b)][0]; });
-    return order;
+/// All particles along a space-filling curve.
+std::vector<std::int32_t> along_curve(const State& state) {
+    const std::vector<double>& radius = state.particles.radius;
+    return spatial_order(state.box, state.particles.position,
+                         std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size()));
 }
 
 /// Part of each particle's surface under the caps of its bonds.
@@ -123,7 +122,8 @@ BondedPiece largest_piece(const State& state) {
     std::vector<std::array<std::int32_t, 2>> pairs;
     pairs.reserve(carrying.size());
     for (const std::int32_t row : carrying) pairs.push_back(state.bonds->pair[at(row)]);
-    const Components pieces = find_components(along_x(state.particles), pairs);
+    const std::vector<std::int32_t> order = along_curve(state);
+    const Components pieces = find_components(order, pairs);
     const std::size_t largest = pieces.largest();
 
     BondedPiece body;
@@ -138,7 +138,9 @@ BondedPiece largest_piece(const State& state) {
         }
     }
     body.node.assign(state.particles.size(), -1);
-    for (const std::int32_t particle : pieces.of(largest)) {
+    for (const std::int32_t particle : pieces.of(largest)) body.node[at(particle)] = 0;
+    for (const std::int32_t particle : order) {
+        if (body.node[at(particle)] < 0) continue;
         body.node[at(particle)] = static_cast<std::int32_t>(body.particle.size());
         body.particle.push_back(particle);
     }

@@ -54,8 +54,8 @@ struct BondedPiece {
     }
 };
 
-/// Nodes in an order that keeps neighbours together, from low x to high x. Throws Error for a state without bonds, or whose bonds
-/// are all negligible.
+/// Nodes along a space-filling curve, so that most neighbours stand near each other. Throws Error for a state without bonds, or
+/// whose bonds are all negligible.
 BondedPiece largest_piece(const State& state);
 
 /// The largest piece as a network of springs.
