@@ -212,7 +212,7 @@ int solve_roughly(const Springs<double>& matrix, Multigrid& preconditioner, cons
 
 template std::array<SolveReport, 1> solve_springs<1, 1>(const Springs<double>&, Multigrid&, const Batch<1>&, Batch<1>&, int, double,
                                                         int, const StopRequest&);
-template std::array<SolveReport, 3> solve_springs<3, 6>(const Springs<double>&, Multigrid&, const Batch<6>&, Batch<6>&, int, double,
+template std::array<SolveReport, 3> solve_springs<3, 3>(const Springs<double>&, Multigrid&, const Batch<3>&, Batch<3>&, int, double,
                                                         int, const StopRequest&);
 
 }  // namespace kiln::linalg

@@ -112,7 +112,7 @@ void residual(const Springs<double>& matrix, const Columns<width, all>& x, const
 }
 
 template void residual(const Springs<double>&, const Columns<1, 1>&, const Columns<1, 1>&, Batch<1>&);
-template void residual(const Springs<double>&, const Columns<3, 6>&, const Columns<3, 6>&, Batch<3>&);
+template void residual(const Springs<double>&, const Columns<3, 3>&, const Columns<3, 3>&, Batch<3>&);
 
 std::vector<Mat6> diagonal_blocks(const Springs<double>& matrix) {
     std::vector<Mat6> diagonal(matrix.nodes(), Mat6::Zero());

@@ -1,7 +1,6 @@
 // elastic_solver.cpp: grounding, preconditioning and solving of a bond network.
 #include "mechanics/elastic_solver.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace kiln::mechanics {
@@ -61,14 +60,10 @@ linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double t
     return linalg::solve_springs<1>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_)[0];
 }
 
-std::array<linalg::SolveReport, 6> ElasticSolver::solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
+std::array<linalg::SolveReport, 3> ElasticSolver::solve(const linalg::Batch<3>& load, linalg::Batch<3>& x, double tolerance,
                                                         int max_iterations) {
     if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
-    std::array<linalg::SolveReport, 6> reports;
-    for (const int first : {0, 3})
-        std::ranges::copy(linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, first, tolerance, max_iterations, stop_),
-                          reports.begin() + first);
-    return reports;
+    return linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_);
 }
 
 int ElasticSolver::respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations) {

@@ -30,8 +30,8 @@ class ElasticSolver {
     /// Displacements under a load in equilibrium; x is where the search starts. See linalg::solve_springs for the result.
     linalg::SolveReport solve(const Vector& load, Vector& x, double tolerance, int max_iterations = 1000);
 
-    /// The same of six loads, three at once: matrix and preconditioner are read once for them.
-    std::array<linalg::SolveReport, 6> solve(const linalg::Batch<6>& load, linalg::Batch<6>& x, double tolerance,
+    /// The same of three loads at once: matrix and preconditioner are read once for them.
+    std::array<linalg::SolveReport, 3> solve(const linalg::Batch<3>& load, linalg::Batch<3>& x, double tolerance,
                                              int max_iterations = 1000);
 
     /// Displacements under nearly a load, to a rough tolerance, and the forces that hold them. Gives the number of iterations.
@@ -43,6 +43,9 @@ class ElasticSolver {
     /// Takes from the matrix what a bond of the network gave to it, but for this share. The preconditioner stays: it still is one
     /// for the softer body.
     void soften(const BondNetwork& network, std::size_t bond, double share);
+
+    /// The bonds, without the ground.
+    const linalg::Springs<double>& springs() const { return matrix_; }
 
     /// There is none where another solver is at work.
     linalg::Multigrid& preconditioner() { return *preconditioner_; }

@@ -2,8 +2,11 @@
 #include "mechanics/elastic_tensor.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
+#include "core/parallel.h"
 #include "mechanics/elastic_solver.h"
 
 namespace kiln::mechanics {
@@ -20,14 +23,92 @@ Mat3 unit_strain(int component) {
     return strain;
 }
 
-/// Mean stress, Pa, as six Voigt components: sum of force times bond vector over the volume (Love 1927).
-Vec6 mean_stress(const BondNetwork& network, const std::vector<BondLoad>& loads, double volume) {
-    Mat3 sum = Mat3::Zero();
-    for (std::size_t bond = 0; bond < loads.size(); ++bond) sum += loads[bond].force * network.vector[bond].transpose();
-    const Mat3 stress = (sum + sum.transpose()) / (2.0 * volume);
-    Vec6 voigt;
-    voigt << stress(0, 0), stress(1, 1), stress(2, 2), stress(1, 2), stress(0, 2), stress(0, 1);
-    return voigt;
+/// Three strains at once, and of each a column.
+using Strains = std::array<Mat3, 3>;
+
+using Spring = linalg::Spring<double>;
+
+Vec3 arm_of(const Spring& spring) { return Vec3(spring.arm[0], spring.arm[1], spring.arm[2]); }
+
+/// Elongations of a spring where its ends follow the strains, over twice the rotation length.
+Mat3 affine_stretch(const Vec3& arm, const Strains& strains) {
+    Mat3 stretch;
+    for (int k = 0; k < 3; ++k) stretch.col(k) = strains[static_cast<std::size_t>(k)] * arm;
+    return stretch;
+}
+
+/// Forces on the first node of a spring, N, for relative displacements, m.
+Mat3 force_of(const Spring& spring, const Vec3& arm, const Mat3& displacement) {
+    return spring.shear * displacement + (spring.axial * arm) * (arm.transpose() * displacement);
+}
+
+/// What the springs do to their nodes where all nodes follow the strains and do not turn.
+linalg::Batch<3> strain_loads(const linalg::Springs<double>& springs, const Strains& strains, double rotation_length) {
+    linalg::Batch<3> load(springs.nodes(), linalg::Values<double, 3>::Zero());
+    for_chunks(springs.chunks(), [&](std::size_t chunk) {
+        const auto [first, last] = springs.nodes_of(chunk);
+        const auto add = [&, first = first, last = last](std::int32_t end, double sign, const Mat3& force, const Mat3& moment) {
+            const auto node = static_cast<std::size_t>(end);
+            if (node < first || node >= last) return;
+            load[node].topRows<3>() += sign * force;
+            load[node].bottomRows<3>() += moment;
+        };
+        springs.for_springs(chunk, [&](const Spring& spring) {
+            const Vec3 arm = arm_of(spring);
+            const Mat3 force = force_of(spring, arm, 2.0 * rotation_length * affine_stretch(arm, strains));
+            Mat3 moment;
+            for (int k = 0; k < 3; ++k) moment.col(k) = arm.cross(force.col(k));
+            add(spring.first, 1.0, force, moment);
+            add(spring.second, -1.0, force, moment);
+        });
+    });
+    return load;
+}
+
+/// Mean stresses, Pa, one column of six Voigt components for each strain: sum of force times bond vector over the volume (Love
+/// 1927).
+struct Stresses {
+    Eigen::Matrix<double, 6, 3> affine = Eigen::Matrix<double, 6, 3>::Zero(), relaxed = affine;
+
+    Stresses& operator+=(const Stresses& other) {
+        affine += other.affine;
+        relaxed += other.relaxed;
+        return *this;
+    }
+};
+
+void add_products(const Mat3& force, const Vec3& arm, Eigen::Matrix<double, 6, 3>& sum) {
+    for (int k = 0; k < 3; ++k) {
+        const Mat3 product = force.col(k) * arm.transpose();
+        const Mat3 symmetric = product + product.transpose();
+        sum.col(k) += (Vec6() << symmetric(0, 0), symmetric(1, 1), symmetric(2, 2), symmetric(1, 2), symmetric(0, 2),
+                       symmetric(0, 1)).finished();
+    }
+}
+
+Stresses stresses(const linalg::Springs<double>& springs, const Strains& strains, const linalg::Batch<3>& motion,
+                  double rotation_length, double volume) {
+    constexpr std::size_t in_chunk = 1024;
+    const std::vector<Spring>& all = springs.springs();
+    Stresses sum = sum_chunks((all.size() + in_chunk - 1) / in_chunk, Stresses(), [&](std::size_t chunk) {
+        Stresses part;
+        for (std::size_t k = chunk * in_chunk; k < std::min(all.size(), (chunk + 1) * in_chunk); ++k) {
+            const Spring& spring = all[k];
+            const Vec3 arm = arm_of(spring);
+            const linalg::Values<double, 3>& first = motion[static_cast<std::size_t>(spring.first)];
+            const linalg::Values<double, 3>& second = motion[static_cast<std::size_t>(spring.second)];
+            const Mat3 affine = 2.0 * rotation_length * affine_stretch(arm, strains);
+            const Mat3 turning = first.bottomRows<3>() + second.bottomRows<3>();
+            Mat3 relaxed = affine + second.topRows<3>() - first.topRows<3>();
+            for (int field = 0; field < 3; ++field) relaxed.col(field) += arm.cross(turning.col(field));
+            add_products(force_of(spring, arm, affine), arm, part.affine);
+            add_products(force_of(spring, arm, relaxed), arm, part.relaxed);
+        }
+        return part;
+    });
+    sum.affine *= rotation_length / volume;
+    sum.relaxed *= rotation_length / volume;
+    return sum;
 }
 
 struct Moduli {
@@ -59,26 +140,24 @@ Compliance compliance_of(const Mat6& stiffness) {
 
 }  // namespace
 
-ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop,
+ElasticTensor elastic_tensor(BondNetwork network, double volume, double tolerance, const StopRequest& stop,
                              const LinearSolverMaker& other) {
     ElasticSolver solver(network, Ground::displacement, stop, other);
+    const double rotation_length = network.rotation_length;
+    network = {};
     ElasticTensor tensor;
-    Vector field(network.nodes(), Vec6::Zero());
-    linalg::Batch<6> load(network.nodes()), displacement;
-    for (int component = 0; component < 6; ++component) {
-        const std::vector<BondLoad> affine = bond_loads(network, field, unit_strain(component));
-        tensor.affine.col(component) = mean_stress(network, affine, volume);
-        const Vector forces = nodal_forces(network, affine);
-        for (std::size_t node = 0; node < forces.size(); ++node) load[node].col(component) = forces[node];
-    }
-    for (const linalg::SolveReport& report : solver.solve(load, displacement, tolerance)) {
-        tensor.iterations += report.iterations;
-        tensor.residual = std::max(tensor.residual, report.residual);
-        tensor.converged = tensor.converged && report.converged;
-    }
-    for (int component = 0; component < 6; ++component) {
-        for (std::size_t node = 0; node < field.size(); ++node) field[node] = displacement[node].col(component);
-        tensor.stiffness.col(component) = mean_stress(network, bond_loads(network, field, unit_strain(component)), volume);
+    for (const int first : {0, 3}) {
+        const Strains strains{unit_strain(first), unit_strain(first + 1), unit_strain(first + 2)};
+        const linalg::Batch<3> load = strain_loads(solver.springs(), strains, rotation_length);
+        linalg::Batch<3> displacement;
+        for (const linalg::SolveReport& report : solver.solve(load, displacement, tolerance)) {
+            tensor.iterations += report.iterations;
+            tensor.residual = std::max(tensor.residual, report.residual);
+            tensor.converged = tensor.converged && report.converged;
+        }
+        const Stresses stress = stresses(solver.springs(), strains, displacement, rotation_length, volume);
+        tensor.affine.middleCols<3>(first) = stress.affine;
+        tensor.stiffness.middleCols<3>(first) = stress.relaxed;
     }
     return tensor;
 }

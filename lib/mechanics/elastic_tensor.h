@@ -16,9 +16,9 @@ struct ElasticTensor {
     bool converged = true;
 };
 
-/// Six uniform strains of a periodic network in a cell of the given volume, m3, solved at once.
-/// other: see ElasticSolver. Throws Interrupted.
-ElasticTensor elastic_tensor(const BondNetwork& network, double volume, double tolerance, const StopRequest& stop = {},
+/// Six uniform strains of a periodic network in a cell of the given volume, m3, three at once. A network that is moved here does
+/// not take memory while they are solved. other: see ElasticSolver. Throws Interrupted.
+ElasticTensor elastic_tensor(BondNetwork network, double volume, double tolerance, const StopRequest& stop = {},
                              const LinearSolverMaker& other = {});
 
 /// What a tensor means for a body without texture.

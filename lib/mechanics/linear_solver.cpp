@@ -35,12 +35,12 @@ linalg::SolveReport solve_with(LinearSolver& solver, const Residual& residual, c
     return report;
 }
 
-std::array<linalg::SolveReport, 6> solve_with(LinearSolver& solver, const Residual& residual, const linalg::Batch<6>& load,
-                                              linalg::Batch<6>& x, double tolerance, int max_iterations) {
-    std::array<linalg::SolveReport, 6> reports;
+std::array<linalg::SolveReport, 3> solve_with(LinearSolver& solver, const Residual& residual, const linalg::Batch<3>& load,
+                                              linalg::Batch<3>& x, double tolerance, int max_iterations) {
+    std::array<linalg::SolveReport, 3> reports;
     const bool from_zero = x.empty();
     x.resize(load.size());
-    for (int field = 0; field < 6; ++field) {
+    for (int field = 0; field < 3; ++field) {
         Vector b(load.size()), found(from_zero ? 0 : load.size());
         for (std::size_t node = 0; node < b.size(); ++node) b[node] = load[node].col(field);
         for (std::size_t node = 0; node < found.size(); ++node) found[node] = x[node].col(field);

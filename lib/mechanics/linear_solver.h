@@ -42,8 +42,8 @@ using Residual = std::function<void(const Vector& x, const Vector& b, Vector& r)
 linalg::SolveReport solve_with(LinearSolver& solver, const Residual& residual, const Vector& load, Vector& x, double tolerance,
                                int max_iterations);
 
-/// The same of six loads, one after the other.
-std::array<linalg::SolveReport, 6> solve_with(LinearSolver& solver, const Residual& residual, const linalg::Batch<6>& load,
-                                              linalg::Batch<6>& x, double tolerance, int max_iterations);
+/// The same of three loads, one after the other.
+std::array<linalg::SolveReport, 3> solve_with(LinearSolver& solver, const Residual& residual, const linalg::Batch<3>& load,
+                                              linalg::Batch<3>& x, double tolerance, int max_iterations);
 
 }  // namespace kiln::mechanics

@@ -186,7 +186,7 @@ TEST_CASE("the preconditioner is symmetric and positive, to the rounding of its 
 
 /// What no other test asks of the solver: loads side by side that end at different iterations, one that is zero, and one whose
 /// search starts at its end.
-TEST_CASE("six loads at once: each as if it were alone, in its own number of iterations") {
+TEST_CASE("three loads at once: each as if it were alone, in its own number of iterations") {
     const BondNetwork network = bonded_body(rough_bar({24, 6, 6}), {}).network;
     ElasticSolver solver(network, Ground::displacement_and_rotation);
     const std::size_t last = network.nodes() - 1;
@@ -195,24 +195,27 @@ TEST_CASE("six loads at once: each as if it were alone, in its own number of ite
         loads.push_back(balanced_load(network, last, 0, force));
     loads.push_back(balanced_load(network, 1, 0, Vec3(0.0, 1.0, 0.0)));
     loads.push_back(loads.front());
-    Batch<6> load(network.nodes()), x(network.nodes(), Values<double, 6>::Zero());
     const Vector known = solved(network, loads[5]);
-    for (std::size_t node = 0; node < network.nodes(); ++node) {
-        for (std::size_t k = 0; k < 6; ++k) load[node].col(static_cast<Eigen::Index>(k)) = loads[k][node];
-        x[node].col(5) = known[node];
-    }
-    const std::array<linalg::SolveReport, 6> reports = solver.solve(load, x, 1e-10);
-    for (std::size_t k = 0; k < 6; ++k) {
-        CAPTURE(k);
-        Vector alone, rest(network.nodes());
-        if (k == 5) alone = known;
-        const linalg::SolveReport report = solver.solve(loads[k], alone, 1e-10);
-        CHECK(reports[k].converged);
-        CHECK(reports[k].residual <= 1e-10);
-        CHECK(std::abs(reports[k].iterations - report.iterations) <= 1);  // rounding decides the last one
-        for (std::size_t node = 0; node < network.nodes(); ++node)
-            rest[node] = x[node].col(static_cast<Eigen::Index>(k)) - alone[node];
-        CHECK(norm(rest) <= 1e-7 * norm(alone));
+    std::array<linalg::SolveReport, 6> reports;
+    for (const std::size_t first : {0, 3}) {
+        Batch<3> load(network.nodes()), x(network.nodes(), Values<double, 3>::Zero());
+        for (std::size_t node = 0; node < network.nodes(); ++node) {
+            for (std::size_t k = 0; k < 3; ++k) load[node].col(static_cast<Eigen::Index>(k)) = loads[first + k][node];
+            if (first == 3) x[node].col(2) = known[node];
+        }
+        std::ranges::copy(solver.solve(load, x, 1e-10), &reports[first]);
+        for (std::size_t k = first; k < first + 3; ++k) {
+            CAPTURE(k);
+            Vector alone, rest(network.nodes());
+            if (k == 5) alone = known;
+            const linalg::SolveReport report = solver.solve(loads[k], alone, 1e-10);
+            CHECK(reports[k].converged);
+            CHECK(reports[k].residual <= 1e-10);
+            CHECK(std::abs(reports[k].iterations - report.iterations) <= 1);  // rounding decides the last one
+            for (std::size_t node = 0; node < network.nodes(); ++node)
+                rest[node] = x[node].col(static_cast<Eigen::Index>(k - first)) - alone[node];
+            CHECK(norm(rest) <= 1e-7 * norm(alone));
+        }
     }
     CHECK(reports[1].iterations == 0);
     CHECK(reports[5].iterations == 0);

@@ -41,7 +41,7 @@ const std::array<std::pair<std::array<int, 3>, bool>, 3> cases{{{{30, 9, 9}, fal
 
 }  // namespace
 
-TEST_CASE("products with springs are those with the assembled matrix, for one field and for three of six") {
+TEST_CASE("products with springs are those with the assembled matrix, for one field and for three") {
     for (const auto& [cells, periodic] : cases) {
         CAPTURE(cells[0]);
         const BondNetwork network = rough_network(cells, periodic);
@@ -51,12 +51,12 @@ TEST_CASE("products with springs are those with the assembled matrix, for one fi
         const Vec6 ground = 0.1 * matrix.block.front().diagonal();
         springs.hold(held, ground);
         Vector x(network.nodes()), y, expected;
-        Batch<6> six(network.nodes(), Values<double, 6>::Zero()), load = six;
+        Batch<3> three(network.nodes()), load(network.nodes(), Values<double, 3>::Zero());
         Batch<3> rest;
         for (std::size_t node = 0; node < network.nodes(); ++node) {
             x[node] = rough_motion(node, 0);
-            for (int field = 0; field < 3; ++field) six[node].col(3 + field) = rough_motion(node, field);
-            load[node].col(4).setConstant(1.0);
+            for (int field = 0; field < 3; ++field) three[node].col(field) = rough_motion(node, field);
+            load[node].col(1).setConstant(1.0);
         }
         multiply(springs, x, y);
         multiply(matrix, x, expected);
@@ -64,13 +64,13 @@ TEST_CASE("products with springs are those with the assembled matrix, for one fi
         Vector difference = y;
         add(-1.0, expected, difference);
         CHECK(norm(difference) <= 1e-14 * norm(expected));
-        residual(springs, Columns<3, 6>{six, 3}, Columns<3, 6>{load, 3}, rest);
+        residual(springs, Columns<3, 3>{three}, Columns<3, 3>{load}, rest);
         for (int field = 0; field < 3; ++field) {
-            for (std::size_t node = 0; node < network.nodes(); ++node) x[node] = six[node].col(3 + field);
+            for (std::size_t node = 0; node < network.nodes(); ++node) x[node] = three[node].col(field);
             multiply(springs, x, expected);
             double off = 0.0;
             for (std::size_t node = 0; node < network.nodes(); ++node)
-                off = std::max(off, (load[node].col(3 + field) - expected[node] - rest[node].col(field)).norm());
+                off = std::max(off, (load[node].col(field) - expected[node] - rest[node].col(field)).norm());
             CHECK(off <= 1e-14 * norm(expected));
         }
         double off = 0.0;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/stiffness_bound.h"
 #include "io/material_io.h"
@@ -124,9 +125,9 @@ Json of_network(const State& state, const mechanics::BondModel& model, double to
     if (!std::all_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; }))
         throw Error(
             "the box is not periodic along all axes, so the state has no elastic tensor; bend tests bodies with free faces");
-    const mechanics::BondedBody body = mechanics::bonded_body(state, model);
+    mechanics::BondedBody body = mechanics::bonded_body(state, model);
     const mechanics::ElasticTensor tensor =
-        mechanics::elastic_tensor(body.network, state.box.volume(), tolerance, solver.stop(), solver.solver());
+        mechanics::elastic_tensor(std::move(body.network), state.box.volume(), tolerance, solver.stop(), solver.solver());
     Json result{{"format", "dem-elastic"},
                 {"version", io::format_version},
                 {"model", "network"},
