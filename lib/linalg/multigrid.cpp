@@ -168,26 +168,21 @@ Values<Real, lanes> block_product(const Eigen::Matrix<Real, 6, 6>& block, const 
     return sum_of_terms<Real, lanes>(1, [&](std::int64_t) { return Term<Real, lanes>{&block, &x}; });
 }
 
-/// Motions of a node of the finest level as those of a coarser one.
-template <typename Real>
-Values<Real, 1> coarse(const Freedoms<Real, 1>& motion) {
-    Values<Real, 1> values;
-    for (int component = 0; component < 6; ++component) values[component] = motion.data()[Freedoms<Real, 1>::place(component, 0)];
+/// Motions of a node of the finest level as those of a coarser one, whose spare fields are zero.
+template <typename Real, int width>
+auto coarse(const Freedoms<Real, width>& motion) {
+    constexpr int lanes = width == 1 ? 1 : 4;
+    Values<Real, lanes> values;
+    for (int component = 0; component < 6; ++component)
+        std::memcpy(values.data() + lanes * component, motion.data() + Freedoms<Real, width>::place(component, 0), lanes * sizeof(Real));
     return values;
 }
-template <typename Real>
-Values<Real, 4> coarse(const Freedoms<Real, 3>& motion) { return Eigen::Map<const Values<Real, 4>>(motion.data()); }
 
-template <typename Real>
-Freedoms<Real, 1> fine(const Values<Real, 1>& values) {
-    Freedoms<Real, 1> motion{};
-    for (int component = 0; component < 6; ++component) motion.data()[Freedoms<Real, 1>::place(component, 0)] = values[component];
-    return motion;
-}
-template <typename Real>
-Freedoms<Real, 3> fine(const Values<Real, 4>& values) {
-    Freedoms<Real, 3> motion;
-    std::memcpy(motion.data(), values.data(), sizeof motion);
+template <int width, typename Real, int lanes>
+Freedoms<Real, width> fine(const Values<Real, lanes>& values) {
+    Freedoms<Real, width> motion{};
+    for (int component = 0; component < 6; ++component)
+        std::memcpy(motion.data() + Freedoms<Real, width>::place(component, 0), values.data() + lanes * component, lanes * sizeof(Real));
     return motion;
 }
 
@@ -268,51 +263,52 @@ double BasicMultigrid<Real>::complexity() const {
     return finest > 0.0 ? blocks / finest : 1.0;
 }
 
-/// load <- load - A step, step <- memory step + gain D^-1 load, and adds it to the solution.
+/// to <- x + memory (x - to) + gain D^-1 (load - A x), where the step before led from `to` to x. No residual is kept: each array
+/// that a step goes through takes as long as the springs do.
 template <typename Real>
 template <int width>
-void BasicMultigrid<Real>::step(FinestFields<width>& fields, double memory, double gain, bool adding) const {
+void BasicMultigrid<Real>::step(const std::vector<Freedoms<Real, width>>& load, const std::vector<Freedoms<Real, width>>& x,
+                                std::vector<Freedoms<Real, width>>& to, double memory, double gain) const {
     using Node = Freedoms<Real, width>;
-    std::vector<Node>&load = fields.load, &solution = fields.solution, &last = fields.step, &next = fields.next;
     const Real factor = static_cast<Real>(gain), kept = static_cast<Real>(memory);
     for_chunks(finest_.springs.chunks(), [&](std::size_t chunk) {
-        finest_.springs.template for_forces<width>(chunk, last, [&](std::size_t node, const Node& force) {
-            load[node] = load[node] - force;
-            next[node] = kept * last[node] + factor * (finest_.inverse_diagonal[node] * load[node]);
-            if (adding) solution[node] = solution[node] + next[node];
+        finest_.springs.template for_forces<width>(chunk, x, [&](std::size_t node, const Node& force) {
+            const Node change = factor * (finest_.inverse_diagonal[node] * (load[node] - force));
+            to[node] = kept == Real{0} ? x[node] + change : x[node] + (kept * (x[node] - to[node]) + change);
         });
     });
-    std::swap(last, next);
 }
 
-/// What the prolongation P = (I - omega D^-1 A) R does is done by the springs.
+/// What the prolongation P = (I - omega D^-1 A) R does is done by the springs. R^T (I - omega A D^-1) (b - A x) is R^T (b - A y)
+/// with y = x + omega D^-1 (b - A x).
 template <typename Real>
 template <int width>
 void BasicMultigrid<Real>::cycle(AllFields<width>& fields) {
     using Node = Freedoms<Real, width>;
-    auto& [load, solution, last, next] = fields.finest;
-    if (levels_.empty()) return solve_coarsest<width>(load, solution);
-    std::vector<Node>&loads = load, &x = solution, &steps = last;
+    auto& [load, x, other, rest] = fields.finest;
+    if (levels_.empty()) return solve_coarsest<width>(load, x);
+    std::vector<Node>&loads = load, &solution = x, &turns = other, &left = rest;
     const std::vector<ChebyshevStep> smoother = chebyshev_steps(finest_smoothing, finest_.max_eigenvalue);
     const double damping = prolongation_damping / finest_.max_eigenvalue;
     const Springs<Real>& springs = finest_.springs;
-    const auto smooth_on = [&] {
-        for (std::size_t k = 1; k < smoother.size(); ++k) step(fields.finest, smoother[k].memory, smoother[k].gain, true);
-    };
     for_rows(
-        x.size(),
+        loads.size(),
         [&](std::size_t node) {
-            steps[node] = static_cast<Real>(smoother[0].gain) * (finest_.inverse_diagonal[node] * loads[node]);
-            x[node] = steps[node];
+            turns[node] = Node{};
+            solution[node] = static_cast<Real>(smoother[0].gain) * (finest_.inverse_diagonal[node] * loads[node]);
         },
         worth_threads);
+    const auto smooth_on = [&] {
+        for (std::size_t k = 1; k < smoother.size(); ++k) {
+            step(loads, solution, turns, smoother[k].memory, smoother[k].gain);
+            std::swap(solution, turns);
+        }
+    };
     smooth_on();
-    // Restriction of what is left.
-    step(fields.finest, 0.0, damping, false);
-    std::vector<Node>& rest = fields.finest.next;
+    step(loads, solution, turns, 0.0, damping);
     for_chunks(springs.chunks(), [&](std::size_t chunk) {
-        springs.template for_forces<width>(chunk, fields.finest.step,
-                                           [&](std::size_t node, const Node& force) { rest[node] = loads[node] - force; });
+        springs.template for_forces<width>(
+            chunk, turns, [&](std::size_t node, const Node& force) { left[node] = loads[node] - force; });
     });
     auto& coarser = fields.coarser.front();
     for_rows(
@@ -320,30 +316,31 @@ void BasicMultigrid<Real>::cycle(AllFields<width>& fields) {
         [&](std::size_t aggregate) {
             Node sum{};
             for (const std::int32_t member : finest_.members.of(aggregate)) {
-                const Node& force = rest[at(member)];
-                sum.u = sum.u + force.u;
-                sum.q = sum.q + force.q + Arm<Real, width>(finest_.arm[at(member)].data()).cross(force.u);
+                const Node& force = left[at(member)];
+                const Arm<Real, width> arm(finest_.arm[at(member)].data());
+                sum = sum + Node::of(force.u(), force.q() + arm.cross(force.u()));
             }
             coarser.load[aggregate] = coarse(sum);
         },
         worth_threads);
     cycle(fields.coarser, 0);
+    std::vector<Node>& rigid = left;
     for_rows(
-        x.size(),
+        rigid.size(),
         [&](std::size_t node) {
-            const Node motion = fine(coarser.solution[at(finest_.aggregate[node])]);
-            fields.finest.step[node] = {motion.u - Arm<Real, width>(finest_.arm[node].data()).cross(motion.q), motion.q};
+            const Node motion = fine<width>(coarser.solution[at(finest_.aggregate[node])]);
+            const Arm<Real, width> arm(finest_.arm[node].data());
+            rigid[node] = Node::of(motion.u() - arm.cross(motion.q()), motion.q());
         },
         worth_threads);
     const Real weight = static_cast<Real>(damping);
     for_chunks(springs.chunks(), [&](std::size_t chunk) {
-        springs.template for_forces<width>(chunk, fields.finest.step, [&](std::size_t node, const Node& force) {
-            fields.finest.next[node] = fields.finest.step[node] - weight * (finest_.inverse_diagonal[node] * force);
-            x[node] = x[node] + fields.finest.next[node];
+        springs.template for_forces<width>(chunk, rigid, [&](std::size_t node, const Node& force) {
+            solution[node] = solution[node] + (rigid[node] - weight * (finest_.inverse_diagonal[node] * force));
         });
     });
-    std::swap(fields.finest.step, fields.finest.next);
-    step(fields.finest, 0.0, smoother[0].gain, true);
+    step(loads, solution, turns, 0.0, smoother[0].gain);
+    std::swap(solution, turns);
     smooth_on();
 }
 
@@ -451,7 +448,7 @@ typename BasicMultigrid<Real>::template Response<width> BasicMultigrid<Real>::ap
                                                                                     const PerField<width>& size) {
     AllFields<width>& all = fields<width>();
     const PerField<width> inwards = (size > 0.0).select(size.inverse(), 0.0);
-    for (auto* field : {&all.finest.load, &all.finest.solution, &all.finest.step, &all.finest.next}) field->resize(r.size());
+    for (auto* field : {&all.finest.load, &all.finest.solution, &all.finest.other, &all.finest.rest}) field->resize(r.size());
     for_rows(
         r.size(),
         [&](std::size_t i) {

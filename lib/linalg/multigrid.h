@@ -61,7 +61,7 @@ class BasicMultigrid {
     };
     template <int width>
     struct FinestFields {
-        std::vector<Freedoms<Real, width>> load, solution, step, next;
+        std::vector<Freedoms<Real, width>> load, solution, other, rest;  // other: the solution before or after a step
     };
     template <int lanes>
     struct Fields {
@@ -82,7 +82,8 @@ class BasicMultigrid {
     template <int width>
     void cycle(AllFields<width>& fields);
     template <int width>
-    void step(FinestFields<width>& fields, double memory, double gain, bool adding) const;
+    void step(const std::vector<Freedoms<Real, width>>& load, const std::vector<Freedoms<Real, width>>& x,
+              std::vector<Freedoms<Real, width>>& to, double memory, double gain) const;
     template <int lanes>
     void cycle(std::vector<Fields<lanes>>& fields, std::size_t index) const;
     template <int lanes>

@@ -113,7 +113,7 @@ class Springs {
             add_wide<width>(c, motions, sums.data());
         else
 #endif
-            add_forces<width>(c, motions, sums.data());
+            add_forces<width, false>(c, motions, sums.data());
         for (const auto& [node, stiffness] : held_)
             if (node >= c.first_node && node < c.last_node)
                 add_ground<width>(stiffness, motion_at<Real, width>(motions, node), sums[node - c.first_node]);
@@ -135,21 +135,21 @@ class Springs {
         std::size_t first_incoming, last_incoming;  // others whose second node is
     };
 
-    template <int width, typename Motions>
+    template <int width, bool one_register, typename Motions>
     KILN_INLINE void add_forces(const Chunk& c, const Motions& motions, Freedoms<Real, width>* sums) const {
         const auto first = static_cast<std::uint32_t>(c.first_node), count = static_cast<std::uint32_t>(c.last_node) - first;
         for (std::size_t k = c.first_spring; k < c.last_spring; ++k) {
             const Spring<Real>& spring = springs_[k];
             expect_motion(motions, at(springs_[std::min(k + springs_ahead, c.last_spring - 1)].second));
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
-            add_force<Real, width>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[i - first],
+            add_force<one_register>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[i - first],
                                    sums[std::min(j - first, count)]);
         }
         for (std::size_t k = c.first_incoming; k < c.last_incoming; ++k) {
             const Spring<Real>& spring = springs_[incoming_[k]];
             expect_motion(motions, at(springs_[incoming_[std::min(k + springs_ahead, c.last_incoming - 1)]].first));
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
-            add_force<Real, width>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[count],
+            add_force<one_register>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[count],
                                    sums[j - first]);
         }
     }
@@ -157,7 +157,7 @@ class Springs {
 #if defined(__x86_64__)
     template <int width, typename Motions>
     [[gnu::target("avx2")]] void add_wide(const Chunk& c, const Motions& motions, Freedoms<Real, width>* sums) const {
-        add_forces<width>(c, motions, sums);
+        add_forces<width, std::is_same_v<Real, float>>(c, motions, sums);
     }
 #endif
 
