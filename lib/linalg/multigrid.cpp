@@ -2,6 +2,7 @@
 #include "linalg/multigrid.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -174,7 +175,7 @@ auto coarse(const Freedoms<Real, width>& motion) {
     constexpr int lanes = width == 1 ? 1 : 4;
     Values<Real, lanes> values;
     for (int component = 0; component < 6; ++component)
-        std::memcpy(values.data() + lanes * component, motion.data() + Freedoms<Real, width>::place(component, 0), lanes * sizeof(Real));
+        std::copy_n(motion.data() + Freedoms<Real, width>::place(component, 0), lanes, values.data() + lanes * component);
     return values;
 }
 
@@ -182,7 +183,7 @@ template <int width, typename Real, int lanes>
 Freedoms<Real, width> fine(const Values<Real, lanes>& values) {
     Freedoms<Real, width> motion{};
     for (int component = 0; component < 6; ++component)
-        std::memcpy(motion.data() + Freedoms<Real, width>::place(component, 0), values.data() + lanes * component, lanes * sizeof(Real));
+        std::copy_n(values.data() + lanes * component, lanes, motion.data() + Freedoms<Real, width>::place(component, 0));
     return motion;
 }
 

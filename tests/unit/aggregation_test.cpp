@@ -64,5 +64,6 @@ TEST_CASE("aggregates cover every node once, each in the reach of its root, and 
         }
     }
     // A front starts elsewhere, and packs them as closely.
-    CHECK(static_cast<double>(count[1]) == doctest::Approx(static_cast<double>(count[0])).epsilon(0.1));
+    CHECK(10 * count[1] > 9 * count[0]);
+    CHECK(10 * count[1] < 11 * count[0]);
 }
