@@ -106,10 +106,10 @@ struct SymmetricBlock {
     }
 };
 
-/// sums += a * b, place by place.
+/// sums += a * b, place by place; products are rounded as Real, sums are not.
 template <typename Real>
 void add_product(Quad<Real> a, Quad<Real> b, WideQuad& sums) {
-    sums.lanes += __builtin_convertvector(a.lanes, WideQuad::Lanes) * __builtin_convertvector(b.lanes, WideQuad::Lanes);
+    sums.lanes += __builtin_convertvector(a.lanes * b.lanes, WideQuad::Lanes);
 }
 
 }  // namespace kiln::linalg

@@ -6,14 +6,9 @@
 #include <vector>
 
 #include "linalg/spring_force.h"
+#include "linalg/wide_registers.h"
 
 namespace kiln::linalg {
-
-#if defined(__x86_64__)
-inline const bool has_wide_registers = (__builtin_cpu_init(), __builtin_cpu_supports("avx2") != 0);
-#else
-inline constexpr bool has_wide_registers = false;
-#endif
 
 template <typename Values>
 KILN_INLINE void expect(const Values& values) {

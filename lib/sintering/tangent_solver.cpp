@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "linalg/wide_registers.h"
 
 namespace kiln::sintering {
 
@@ -67,38 +70,53 @@ void TangentSolver<Real>::factorise(std::span<const Vec3> branch) {
     coarse_.factorise(stiffness_.springs());
 }
 
-/// The residual of x = 0, and zeros.
+/// The residual of x = 0, and zeros. Returns the product of the residual with the preconditioned one.
 template <typename Real>
-void TangentSolver<Real>::start(std::size_t index, const Motion& b, double scale) {
+double TangentSolver<Real>::start(std::size_t index, const Motion& b, double scale) {
     const linalg::NodeRange& range = stiffness_.range(index);
     for (auto* field : {&x_, &p_, &y_, &product_})
         std::fill(field->begin() + static_cast<std::ptrdiff_t>(range.first_node),
                   field->begin() + static_cast<std::ptrdiff_t>(range.last_node), Quad<Real>{});
     std::array<Quad<Real>, ContactNetwork::chunk_particles> sums{};
+    linalg::WideQuad product;
     stiffness_.factor().forward(range, sums.data(), [&](std::size_t node, Quad<Real> sum) {
         residual_[node] = sum + linalg::quad<Real>(b.displacement[3 * node] / scale, b.displacement[3 * node + 1] / scale,
                                                    b.displacement[3 * node + 2] / scale);
-        return stiffness_.factor().inverse(node) * residual_[node];
+        const Quad<Real> value = stiffness_.factor().inverse(node) * residual_[node];
+        linalg::add_product(residual_[node], value, product);
+        return value;
     });
+    return product.sum();
 }
 
+/// Returns the product of the residual with the preconditioned one.
+template <typename Real>
+double TangentSolver<Real>::take_step(std::size_t index, Real step) {
+    const linalg::NodeRange& range = stiffness_.range(index);
+    linalg::WideQuad product;
+    for (std::size_t row = range.first_node; row < range.last_node; ++row) {
+        x_[row] += step * p_[row];
+        residual_[row] -= step * product_[row];
+        linalg::add_product(residual_[row], stiffness_.factor().inverse(row) * residual_[row], product);
+    }
+    return product.sum();
+}
+
+/// Without coarse spaces the step itself is left to turn(): the product of the residual after it follows from those before it.
 template <typename Real>
 double TangentSolver<Real>::advance(double step) {
     x_strain_ += step * p_strain_;
     residual_strain_ -= step * product_strain_;
     z_strain_ = allowed_ * (stiffness_.strain_inverse() * residual_strain_);
-    const auto length = static_cast<Real>(step);
-    const double product = network_.sum_chunks(0.0, [&](std::size_t index) {
-        const linalg::NodeRange& range = stiffness_.range(index);
-        linalg::WideQuad sums;
-        for (std::size_t row = range.first_node; row < range.last_node; ++row) {
-            x_[row] += length * p_[row];
-            residual_[row] -= length * product_[row];
-            linalg::add_product(residual_[row], stiffness_.factor().inverse(row) * residual_[row], sums);
-        }
-        return sums.sum();
-    });
-    return product + (coarse_.empty() ? 0.0 : apply_coarse()) + residual_strain_.dot(z_strain_);
+    double product = 0.0;
+    if (coarse_.empty()) {
+        step_ = step;
+        product = std::max(residual2_ - 2.0 * step * product_of_.residual + step * step * product_of_.square, 0.0);
+    } else {
+        product = network_.sum_chunks(0.0, [&](std::size_t index) { return take_step(index, static_cast<Real>(step)); });
+        product += apply_coarse();
+    }
+    return product + residual_strain_.dot(z_strain_);
 }
 
 /// Leaves in coarse_z_ what the coarse spaces bring to y, and adds it to the strains. Returns its product with the residual.
@@ -125,16 +143,24 @@ double TangentSolver<Real>::apply_coarse() {
     });
 }
 
+/// The step that is left along the last p, then the next p. Returns the product of the residual with the preconditioned one.
 template <typename Real>
-void TangentSolver<Real>::find_direction(std::size_t index, Real ratio) {
+double TangentSolver<Real>::find_direction(std::size_t index, Real step, Real ratio) {
     const linalg::IncompleteCholesky<Real>& factor = stiffness_.factor();
+    linalg::WideQuad product;
     factor.backward(stiffness_.range(index), p_.data(), [&](std::size_t node, Quad<Real> sum) {
-        Quad<Real> y = factor.inverse(node) * residual_[node] + ratio * y_[node];
+        x_[node] += step * p_[node];
+        const Quad<Real> residual = residual_[node] - step * product_[node];
+        const Quad<Real> preconditioned = factor.inverse(node) * residual;
+        residual_[node] = residual;
+        linalg::add_product(residual, preconditioned, product);
+        Quad<Real> y = preconditioned + ratio * y_[node];
         if (!coarse_.empty()) y += coarse_r_.displacement[node];
         y_[node] = y;
         p_[node] = y + factor.inverse(node) * sum;
         known_[node] = factor.diagonal(node) * p_[node] - sum;
     });
+    return product.sum();
 }
 
 template <typename Real>
@@ -144,25 +170,34 @@ typename TangentSolver<Real>::Product TangentSolver<Real>::multiply(std::size_t 
     stiffness_.add_outer(index, p_, sums.data());
     const Quad<Real> strain = linalg::quad<Real>(p_strain_);
     const Quad<Real> x = linalg::all<0>(strain), y = linalg::all<1>(strain), z = linalg::all<2>(strain);
-    linalg::WideQuad curvature;
+    linalg::WideQuad curvature, residual, square;
     std::array<linalg::WideQuad, 3> work;
     factor.forward(stiffness_.range(index), sums.data(), [&](std::size_t node, Quad<Real> sum) {
         const std::array<Quad<Real>, 3>& unit = stiffness_.strain_forces(node);
         for (std::size_t axis = 0; axis < 3; ++axis) linalg::add_product(unit[axis], p_[node], work[axis]);
-        product_[node] = known_[node] - sum + unit[0] * x + unit[1] * y + unit[2] * z;
-        linalg::add_product(y_[node], product_[node], curvature);
-        return p_[node] - factor.inverse(node) * product_[node];
+        const Quad<Real> product = known_[node] - sum + unit[0] * x + unit[1] * y + unit[2] * z;
+        const Quad<Real> preconditioned = factor.inverse(node) * product;
+        product_[node] = product;
+        linalg::add_product(y_[node], product, curvature);
+        linalg::add_product(residual_[node], preconditioned, residual);
+        linalg::add_product(product, preconditioned, square);
+        return p_[node] - preconditioned;
     });
-    return {curvature.sum(), Vec3(work[0].sum(), work[1].sum(), work[2].sum())};
+    return {curvature.sum(), residual.sum(), square.sum(), Vec3(work[0].sum(), work[1].sum(), work[2].sum())};
 }
 
 template <typename Real>
 double TangentSolver<Real>::turn(double ratio) {
     p_strain_ = z_strain_ + ratio * p_strain_;
-    network_.for_chunks([&](std::size_t index) { find_direction(index, static_cast<Real>(ratio)); });
-    const Product product = network_.sum_chunks(Product(), [&](std::size_t index) { return multiply(index); });
-    product_strain_ = allowed_ * (product.strain + stiffness_.of_strain() * p_strain_);
-    return product.curvature + p_strain_.dot(product_strain_);
+    const Real step = static_cast<Real>(std::exchange(step_, 0.0));
+    residual2_ = network_.sum_chunks(0.0, [&](std::size_t index) {
+        return linalg::in_widest_registers([&] { return find_direction(index, step, static_cast<Real>(ratio)); });
+    });
+    product_of_ = network_.sum_chunks(Product(), [&](std::size_t index) {
+        return linalg::in_widest_registers([&] { return multiply(index); });
+    });
+    product_strain_ = allowed_ * (product_of_.strain + stiffness_.of_strain() * p_strain_);
+    return product_of_.curvature + p_strain_.dot(product_strain_);
 }
 
 template <typename Real>
@@ -181,7 +216,9 @@ linalg::CgProgress TangentSolver<Real>::solve(const Eigen::Matrix3d& allowed, co
     x_strain_ = p_strain_ = z_strain_ = product_strain_ = Vec3::Zero();
     linalg::CgProgress progress;
     if (scale > 0.0) {
-        network_.for_chunks([&](std::size_t index) { start(index, b, scale); });
+        step_ = 0.0;
+        product_of_ = {};
+        residual2_ = network_.sum_chunks(0.0, [&](std::size_t index) { return start(index, b, scale); });
         residual_strain_ = allowed * b.strain / scale;
         const auto unscaled = [&](linalg::CgProgress scaled) {
             for (double* square : {&scaled.energy, &scaled.error2, &scaled.residual2}) *square *= scale * scale;
@@ -192,9 +229,11 @@ linalg::CgProgress TangentSolver<Real>::solve(const Eigen::Matrix3d& allowed, co
     }
     network_.for_chunks([&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
+            const Quad<Real> moved = scale > 0.0 ? x_[row] + static_cast<Real>(step_) * p_[row] : Quad<Real>{};
             for (std::size_t axis = 0; axis < 3; ++axis)
-                x.displacement[3 * row + axis] = scale > 0.0 ? scale * static_cast<double>(x_[row].lanes[axis]) : 0.0;
+                x.displacement[3 * row + axis] = scale * static_cast<double>(moved.lanes[axis]);
+        }
     });
     x.strain = scale * x_strain_;
     return progress;

@@ -52,17 +52,21 @@ class TangentSolver {
     double turn(double ratio);
 
    private:
+    /// Of p with q = A p, and of the preconditioned q with the residual and with q itself; q of the strains.
     struct Product {
-        double curvature = 0.0;
+        double curvature = 0.0, residual = 0.0, square = 0.0;
         Vec3 strain = Vec3::Zero();
         void operator+=(const Product& other) {
             curvature += other.curvature;
+            residual += other.residual;
+            square += other.square;
             strain += other.strain;
         }
     };
-    void start(std::size_t chunk, const Motion& b, double scale);
+    double start(std::size_t chunk, const Motion& b, double scale);
+    double take_step(std::size_t chunk, Real step);
     double apply_coarse();
-    void find_direction(std::size_t chunk, Real ratio);
+    double find_direction(std::size_t chunk, Real step, Real ratio);
     Product multiply(std::size_t chunk);
 
     const ContactNetwork& network_;
@@ -73,6 +77,9 @@ class TangentSolver {
     // product whose force is known before the forward pass. Strains beside them, without any transformation.
     std::vector<Quad<Real>> x_, p_, y_, residual_, product_, known_;
     Vec3 x_strain_, p_strain_, residual_strain_, z_strain_, product_strain_;
+    double step_ = 0.0;      // that x and the residual have yet to make along p: turn() does both in its first pass
+    double residual2_ = 0.0;  // of the residual with the preconditioned residual, before that step
+    Product product_of_;      // of the present p
     QuadMotion<Real> coarse_r_, coarse_z_;  // where there are coarse spaces
 };
 
