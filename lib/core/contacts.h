@@ -29,6 +29,12 @@ class Clusters {
     /// The lowest row of the cluster that a row is in.
     std::int32_t root(std::int32_t row);
 
+    /// The same, when nothing is joined any more.
+    std::int32_t root_of(std::int32_t row) const {
+        while (parent_[static_cast<std::size_t>(row)] != row) row = parent_[static_cast<std::size_t>(row)];
+        return row;
+    }
+
     void join(std::int32_t a, std::int32_t b);
 
    private:

@@ -10,6 +10,11 @@
 
 namespace kiln::linalg {
 
+/// An edge's n, and kn - kt and kt in every place but the spare ones.
+struct SpringLanes {
+    Quad<double> direction, more, across;
+};
+
 /// Stiffness kt I + (kn - kt) n n^T of each edge of a network.
 template <typename Real>
 class EdgeStiffness {
@@ -45,6 +50,11 @@ class EdgeStiffness {
     Entry spring(std::size_t edge) const {
         const auto& n = direction_[edge].lanes;
         return {n[0], n[1], n[2], n[3], across_[edge]};
+    }
+
+    SpringLanes lanes(std::size_t edge) const {
+        const Quad<double> n = in_double(direction_[edge]), one{{1.0, 1.0, 1.0, 0.0}};
+        return {only_vector(n), only_vector(all<3>(n)), static_cast<double>(across_[edge]) * one};
     }
 
     /// Block times v, whose spare place is zero; that of the product is anything.

@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "linalg/wide_registers.h"
+
 namespace kiln::linalg {
 
 namespace {
@@ -12,47 +14,38 @@ namespace {
 template <typename Real>
 constexpr double min_pivot = sizeof(Real) == 4 ? 1e-6 : 1e-14;
 
-/// The six numbers of a symmetric 3x3 block, one by one: of vectors of two doubles most would be spent on putting them in order.
-struct Six {
-    double xx = 0.0, yy = 0.0, zz = 0.0, yz = 0.0, zx = 0.0, xy = 0.0;
+/// Of the symmetric a b^T + b a^T the numbers beside the diagonal: yz, zx, xy.
+Quad<double> mixed(Quad<double> a, Quad<double> b) {
+    return in_order<1, 2, 0>(a) * in_order<2, 0, 1>(b) + in_order<2, 0, 1>(a) * in_order<1, 2, 0>(b);
+}
 
-    Six() = default;
-    explicit Six(const Eigen::Matrix3d& m) : xx(m(0, 0)), yy(m(1, 1)), zz(m(2, 2)), yz(m(2, 1)), zx(m(2, 0)), xy(m(1, 0)) {}
+/// m += the block of a spring.
+void add(const SpringLanes& k, SymmetricBlock<double>& m) {
+    const Quad<double> along = k.more * k.direction;
+    m.diagonal += along * k.direction + k.across;
+    m.off += in_order<1, 2, 0>(along) * in_order<2, 0, 1>(k.direction);
+}
 
-    Eigen::Matrix3d matrix() const {
-        Eigen::Matrix3d m;
-        m << xx, xy, zx, xy, yy, yz, zx, yz, zz;
-        return m;
-    }
+/// block -= K m K of a spring's block K = kt I + k n n^T: kt^2 m + n g^T + g n^T with g = kt k m n + k^2/2 (n m n) n.
+void take(const SpringLanes& k, const SymmetricBlock<double>& m, SymmetricBlock<double>& block) {
+    const Quad<double> seen = m * k.direction;
+    const Quad<double> g = k.more * (k.across * seen + 0.5 * k.more * sum(k.direction * seen) * k.direction);
+    const Quad<double> square = k.across * k.across, share = k.direction * g;
+    block.diagonal -= square * m.diagonal + (share + share);
+    block.off -= square * m.off + mixed(k.direction, g);
+}
 
-    template <typename Spring>
-    void add(const Spring& k) {
-        const double x = k.more * k.x, y = k.more * k.y, z = k.more * k.z;
-        xx += x * k.x + k.across;
-        yy += y * k.y + k.across;
-        zz += z * k.z + k.across;
-        yz += y * k.z;
-        zx += z * k.x;
-        xy += x * k.y;
-    }
-
-    /// Takes off K m K of a spring's block K.
-    template <typename Spring>
-    void take(const Spring& k, const Six& m) {
-        // All but m itself is n h^T + h n^T.
-        const double mx = m.xx * k.x + m.xy * k.y + m.zx * k.z, my = m.xy * k.x + m.yy * k.y + m.yz * k.z,
-                     mz = m.zx * k.x + m.yz * k.y + m.zz * k.z;
-        const double square = k.across * k.across, mixed = k.across * k.more,
-                     along = 0.5 * k.more * k.more * (k.x * mx + k.y * my + k.z * mz);
-        const double hx = mixed * mx + along * k.x, hy = mixed * my + along * k.y, hz = mixed * mz + along * k.z;
-        xx -= square * m.xx + 2.0 * k.x * hx;
-        yy -= square * m.yy + 2.0 * k.y * hy;
-        zz -= square * m.zz + 2.0 * k.z * hz;
-        yz -= square * m.yz + (k.y * hz + k.z * hy);
-        zx -= square * m.zx + (k.z * hx + k.x * hz);
-        xy -= square * m.xy + (k.x * hy + k.y * hx);
-    }
-};
+/// Inverse of a block that has one, by its minors; pivots of its L D L^T that are not above least have none.
+bool invert(const SymmetricBlock<double>& m, double least, SymmetricBlock<double>& inverse) {
+    const Vec3 d = vector(m.diagonal), o = vector(m.off);
+    const double xx = d[1] * d[2] - o[0] * o[0], xy = o[0] * o[1] - o[2] * d[2], zx = o[2] * o[0] - o[1] * d[1];
+    const double zz = d[0] * d[1] - o[2] * o[2], determinant = d[0] * xx + o[2] * xy + o[1] * zx;
+    if (!(d[0] > least && zz > least * d[0] && determinant > least * zz)) return false;
+    const double scale = 1.0 / determinant;
+    inverse.diagonal = quad<double>(scale * xx, scale * (d[0] * d[2] - o[1] * o[1]), scale * zz);
+    inverse.off = quad<double>(scale * (o[2] * o[1] - d[0] * o[0]), scale * zx, scale * xy);
+    return true;
+}
 
 }  // namespace
 
@@ -90,38 +83,53 @@ IncompleteCholesky<Real>::IncompleteCholesky(std::size_t nodes, std::span<const 
 
 template <typename Real>
 void IncompleteCholesky<Real>::factorise(const NodeRange& range) {
-    std::vector<Six> left(range.last_node - range.first_node);  // of each diagonal block
+    // In double precision, since stiff springs take each other off where soft ones are left.
+    std::vector<SymmetricBlock<double>> left(range.last_node - range.first_node);
+    in_widest_registers([&] { add_springs(range, left.data()); });
+    in_widest_registers([&] { eliminate(range, left.data()); });
+}
+
+/// left: of each node of the range, zero to begin with, the diagonal block of the stiffness.
+template <typename Real>
+void IncompleteCholesky<Real>::add_springs(const NodeRange& range, SymmetricBlock<double>* left) {
     for (std::size_t edge = range.begin; edge < range.inside; ++edge) {
-        const auto spring = springs_.spring(edge);
-        left[static_cast<std::size_t>(first_[edge]) - range.first_node].add(spring);
-        left[static_cast<std::size_t>(second_[edge]) - range.first_node].add(spring);
+        const auto spring = springs_.lanes(edge);
+        add(spring, left[static_cast<std::size_t>(first_[edge]) - range.first_node]);
+        add(spring, left[static_cast<std::size_t>(second_[edge]) - range.first_node]);
     }
     for (std::size_t edge = range.inside; edge < range.end; ++edge) {
         if (first_[edge] == second_[edge]) continue;  // its own image: no relative motion but by strain
         for (const std::int32_t node : {first_[edge], second_[edge]}) {
             const auto row = static_cast<std::size_t>(node);
-            if (row >= range.first_node && row < range.last_node) left[row - range.first_node].add(springs_.spring(edge));
+            if (row >= range.first_node && row < range.last_node) add(springs_.lanes(edge), left[row - range.first_node]);
         }
     }
     for (std::size_t node = range.first_node; node < range.last_node; ++node)
-        diagonal_[node] = SymmetricBlock<Real>(left[node - range.first_node].matrix());
+        diagonal_[node] = SymmetricBlock<Real>(left[node - range.first_node]);
+}
+
+/// left: what elimination has left of each diagonal block of the range, the block itself to begin with.
+template <typename Real>
+void IncompleteCholesky<Real>::eliminate(const NodeRange& range, SymmetricBlock<double>* left) {
     std::size_t edge = range.begin;
     for (std::size_t node = range.first_node; node < range.last_node; ++node) {
-        const Eigen::Matrix3d inverse =
-            pivot_inverse(left[node - range.first_node].matrix(), diagonal_[node].matrix(), min_pivot<Real>);
+        const SymmetricBlock<double> pivot = left[node - range.first_node];
+        const SymmetricBlock<Real> before = diagonal_[node];
+        SymmetricBlock<double> inverse;
+        if (!invert(pivot, min_pivot<Real> * vector(before.diagonal).sum(), inverse))
+            inverse = SymmetricBlock<double>(pivot_inverse(pivot.matrix(), before.matrix(), min_pivot<Real>));
         inverse_[node] = SymmetricBlock<Real>(inverse);
-        const Six six(inverse);
         while (edge < end_[node]) {
             const std::int32_t other = second_[edge];
-            Six& of_other = left[static_cast<std::size_t>(other) - range.first_node];
+            SymmetricBlock<double>& of_other = left[static_cast<std::size_t>(other) - range.first_node];
             const std::size_t first = edge++;
             if (edge == end_[node] || second_[edge] != other) {
-                of_other.take(springs_.spring(first), six);
+                take(springs_.lanes(first), inverse, of_other);
                 continue;
             }
             Eigen::Matrix3d block = springs_.spring(first).block();  // parallel edges are one
             for (; edge < end_[node] && second_[edge] == other; ++edge) block += springs_.spring(edge).block();
-            of_other = Six(of_other.matrix() - block * inverse * block);
+            of_other = SymmetricBlock<double>(Eigen::Matrix3d(of_other.matrix() - block * inverse.matrix() * block));
         }
     }
 }

@@ -76,6 +76,9 @@ class IncompleteCholesky {
     }
 
    private:
+    void add_springs(const NodeRange& range, SymmetricBlock<double>* left);
+    void eliminate(const NodeRange& range, SymmetricBlock<double>* left);
+
     std::span<const std::int32_t> first_, second_;
     const EdgeStiffness<Real>& springs_;
     std::vector<std::size_t> end_;  // of the edges inside the range whose first node this is

@@ -10,20 +10,23 @@
 
 namespace kiln::linalg {
 
+// Aligned to 16 bytes whatever the registers: code for those of 32 bytes would else take vectors to be aligned to all of theirs.
 template <typename Real>
 struct Quad {
-    using Lanes [[gnu::vector_size(4 * sizeof(Real))]] = Real;
+    using Lanes [[gnu::vector_size(4 * sizeof(Real)), gnu::aligned(16)]] = Real;
     Lanes lanes{};
 };
 
 /// The same in double precision, for sums.
 struct WideQuad {
-    using Lanes [[gnu::vector_size(32)]] = double;
+    using Lanes [[gnu::vector_size(32), gnu::aligned(16)]] = double;
     Lanes lanes{};
 
     double sum() const { return lanes[0] + lanes[1] + lanes[2] + lanes[3]; }
     Vec3 vector() const { return {lanes[0], lanes[1], lanes[2]}; }
 };
+
+inline WideQuad wide_quad(double x, double y, double z) { return {WideQuad::Lanes{x, y, z, 0.0}}; }
 
 template <typename Real>
 Quad<Real> operator+(Quad<Real> a, Quad<Real> b) { return {a.lanes + b.lanes}; }
@@ -48,6 +51,9 @@ Quad<Real> quad(const Vec3& v) { return quad<Real>(v[0], v[1], v[2]); }
 /// x, y and z.
 template <typename Real>
 Vec3 vector(Quad<Real> a) { return Vec3(a.lanes[0], a.lanes[1], a.lanes[2]); }
+
+template <typename Real>
+Quad<double> in_double(Quad<Real> a) { return {__builtin_convertvector(a.lanes, Quad<double>::Lanes)}; }
 
 /// Four neighbours in memory, at any address.
 template <typename Real>
@@ -92,6 +98,11 @@ struct SymmetricBlock {
     template <typename Matrix>
     explicit SymmetricBlock(const Matrix& m)
         : diagonal(quad<Real>(m(0, 0), m(1, 1), m(2, 2))), off(quad<Real>(m(2, 1), m(2, 0), m(1, 0))) {}
+
+    template <typename Other>
+    explicit SymmetricBlock(const SymmetricBlock<Other>& other)
+        : diagonal{__builtin_convertvector(other.diagonal.lanes, typename Quad<Real>::Lanes)},
+          off{__builtin_convertvector(other.off.lanes, typename Quad<Real>::Lanes)} {}
 
     Eigen::Matrix3d matrix() const {
         Eigen::Matrix3d m = vector(diagonal).asDiagonal();

@@ -35,9 +35,17 @@ inline double normal_viscosity_factor(const ContactConstants& c, double reduced)
     return std::numbers::pi * 16.0 * reduced * reduced / (2.0 * c.beta);
 }
 
+/// The number, or zero for one below; Number: double or a vector of them.
+template <typename Number>
+inline Number positive(Number number) {
+    const Number zero{};
+    return number > zero ? number : zero;
+}
+
 /// How the normal viscosity grows with the overlap: h^2, m2. With its integral and the inverse of that below, the only place
 /// where the power of h stands.
-inline double viscosity_shape(double overlap) { return overlap > 0.0 ? overlap * overlap : 0.0; }
+template <typename Number>
+inline Number viscosity_shape(Number overlap) { return positive(overlap) * positive(overlap); }
 
 /// Integral of viscosity_shape from one overlap to another, m3; K/Delta times it is the force times the time in which that alone
 /// is overcome. Overlaps below zero count as zero.
@@ -47,9 +55,10 @@ inline double viscosity_integral(double from, double until) {
 }
 
 /// Mean of viscosity_shape between two overlaps, m2: the secant of its integral, finite where both are the same.
-inline double mean_viscosity_shape(double one, double other) {
-    const double a = one > 0.0 ? one : 0.0, b = other > 0.0 ? other : 0.0;
-    return (a * a + a * b + b * b) / 3.0;
+template <typename Number>
+inline Number mean_viscosity_shape(Number one, Number other) {
+    const Number a = positive(one), b = positive(other);
+    return (a * a + a * b + b * b) * (1.0 / 3.0);
 }
 
 /// The overlap up to which viscosity_integral from `from` is `integral` (m3), m. Never below zero.

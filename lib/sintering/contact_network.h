@@ -8,11 +8,16 @@
 // and each adds the force on its own particle. So chunks are independent, and results do not depend on the number of threads.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/neighbours.h"
 #include "core/parallel.h"
+#include "linalg/quad.h"
+#include "linalg/wide_registers.h"
 
 namespace kiln::sintering {
 
@@ -22,6 +27,11 @@ struct Motion {
     Vec3 strain = Vec3::Zero();        // of the box along its axes
 
     explicit Motion(std::size_t particles = 0) : displacement(3 * particles, 0.0) {}
+};
+
+/// x, y and z of four vectors.
+struct Fours {
+    linalg::WideQuad::Lanes x, y, z;
 };
 
 class ContactNetwork {
@@ -54,9 +64,10 @@ class ContactNetwork {
     }
 
     /// forces = sum over contacts of force(entry, du): added to particle j, taken from i; forces.strain = sum of force * l.
-    /// du is the relative motion of the contact. total is scratch space of 3N.
+    /// du is the relative motion of the contact. total is scratch space of N. Or of four entries at a time: force(entry, count, du)
+    /// gives the Fours of the forces of the first `count` of entry, entry + 1 and so on; what it gives for the others is left out.
     template <typename Force>
-    void gather(const Motion& motion, Motion& forces, std::vector<double>& total, const Force& force) const;
+    void gather(const Motion& motion, Motion& forces, std::vector<linalg::WideQuad>& total, const Force& force) const;
 
     /// Calls visit(entry) once for each contact of a chunk that it owns, so that all chunks together visit every contact once.
     template <typename Visit>
@@ -70,6 +81,9 @@ class ContactNetwork {
     std::vector<std::int32_t> first, second;    // particles i and j of each entry
     std::vector<std::int32_t> pair;             // row of the entry in the list of pairs
 
+    /// The entry of a row of the list of pairs that the chunk of its first particle has.
+    std::size_t entry_of(std::size_t row) const { return static_cast<std::size_t>(entry_[row]); }
+
     /// Of a crossing entry: its shift, m, and whether the chunk owns its first and its second particle.
     const Vec3& shift(const Chunk& chunk, std::size_t entry) const { return shift_[chunk.shift_begin + entry - chunk.crossing]; }
     bool owns_first(const Chunk& chunk, std::size_t entry) const { return owns(chunk, entry, own_first); }
@@ -81,84 +95,109 @@ class ContactNetwork {
     bool owns(const Chunk& chunk, std::size_t entry, std::uint8_t which) const {
         return (side_[chunk.shift_begin + entry - chunk.crossing] & which) != 0;
     }
-    template <bool AddFirst, bool AddSecond, typename Force>
-    void gather_range(std::size_t begin, std::size_t end, const double* total, double* forces, const Force& force) const;
-    void displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const;
+    template <typename MotionOf, typename Force, typename Take>
+    static void for_entries(std::size_t begin, std::size_t end, const MotionOf& motion_of, const Force& force, const Take& take);
+    void displace(std::size_t chunk, const Motion& motion, std::vector<linalg::WideQuad>& total) const;
     template <typename Force>
-    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<double>& total, Motion& forces,
+    Vec3 gather_chunk(std::size_t chunk, const Vec3& strain, const std::vector<linalg::WideQuad>& total, Motion& forces,
                       const Force& force) const;
-    template <typename Force>
-    Vec3 gather_crossing(const Chunk& chunk, const Vec3& strain, const double* total, double* forces, const Force& force) const;
 
     std::vector<Vec3> position_;
+    std::vector<std::int32_t> entry_;  // of each pair
     std::vector<Chunk> chunks_;
     std::vector<Vec3> shift_;         // m, of crossing entries
     std::vector<std::uint8_t> side_;  // which particles of a crossing entry are the chunk's own
 };
 
-template <bool AddFirst, bool AddSecond, typename Force>
-void ContactNetwork::gather_range(std::size_t begin, std::size_t end, const double* total, double* forces,
-                                  const Force& force) const {
-    for (std::size_t entry = begin; entry < end; ++entry) {
-        const std::size_t i = 3 * static_cast<std::size_t>(first[entry]), j = 3 * static_cast<std::size_t>(second[entry]);
-        const Vec3 f = force(entry, Vec3(total[j] - total[i], total[j + 1] - total[i + 1], total[j + 2] - total[i + 2]));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double component = f[static_cast<Eigen::Index>(axis)];
-            if constexpr (AddFirst) forces[i + axis] -= component;
-            if constexpr (AddSecond) forces[j + axis] += component;
+/// A matrix of four by four.
+struct FourByFour {
+    linalg::WideQuad::Lanes a, b, c, d;
+
+    FourByFour transposed() const {
+        const auto even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+        const auto even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+        return {__builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5), __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5),
+                __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7), __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7)};
+    }
+};
+
+template <typename MotionOf, typename Force, typename Take>
+void ContactNetwork::for_entries(std::size_t begin, std::size_t end, const MotionOf& motion_of, const Force& force,
+                                 const Take& take) {
+    if constexpr (std::is_invocable_v<const Force&, std::size_t, std::size_t, const Fours&>) {
+        for (std::size_t entry = begin; entry < end; entry += 4) {
+            const std::size_t count = std::min<std::size_t>(4, end - entry), last = entry + count - 1;
+            const FourByFour du = FourByFour{motion_of(entry).lanes, motion_of(std::min(entry + 1, last)).lanes,
+                                             motion_of(std::min(entry + 2, last)).lanes, motion_of(last).lanes}.transposed();
+            const Fours forces = force(entry, count, Fours{du.a, du.b, du.c});
+            const FourByFour f = FourByFour{forces.x, forces.y, forces.z, {}}.transposed();
+            take(entry, linalg::WideQuad{f.a});
+            if (count > 1) take(entry + 1, linalg::WideQuad{f.b});
+            if (count > 2) take(entry + 2, linalg::WideQuad{f.c});
+            if (count > 3) take(entry + 3, linalg::WideQuad{f.d});
+        }
+    } else {
+        for (std::size_t entry = begin; entry < end; ++entry) {
+            const Vec3 f = force(entry, motion_of(entry).vector());
+            take(entry, linalg::wide_quad(f[0], f[1], f[2]));
         }
     }
 }
 
-template <typename Force>
-Vec3 ContactNetwork::gather_crossing(const Chunk& chunk, const Vec3& strain, const double* total, double* forces,
-                                     const Force& force) const {
-    Vec3 work = Vec3::Zero();
-    for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
-        const std::size_t i = 3 * static_cast<std::size_t>(first[entry]), j = 3 * static_cast<std::size_t>(second[entry]);
-        const Vec3 du = Vec3(total[j] - total[i], total[j + 1] - total[i + 1], total[j + 2] - total[i + 2]) +
-                        strain.cwiseProduct(shift(chunk, entry));
-        const Vec3 f = force(entry, du);
-        if (owns_first(chunk, entry)) {
-            work += f.cwiseProduct(shift(chunk, entry));
-            for (std::size_t axis = 0; axis < 3; ++axis) forces[i + axis] -= f[static_cast<Eigen::Index>(axis)];
-        }
-        if (owns_second(chunk, entry))
-            for (std::size_t axis = 0; axis < 3; ++axis) forces[j + axis] += f[static_cast<Eigen::Index>(axis)];
-    }
-    return work;
-}
-
-inline void ContactNetwork::displace(std::size_t chunk, const Motion& motion, std::vector<double>& total) const {
+inline void ContactNetwork::displace(std::size_t chunk, const Motion& motion, std::vector<linalg::WideQuad>& total) const {
     for (std::size_t row = chunks_[chunk].first_particle; row < chunks_[chunk].last_particle; ++row) {
-        Eigen::Map<Vec3> target(&total[3 * row]);
-        target = Eigen::Map<const Vec3>(&motion.displacement[3 * row]) + motion.strain.cwiseProduct(position_[row]);
+        const double* u = &motion.displacement[3 * row];
+        const Vec3& x = position_[row];
+        total[row] = linalg::wide_quad(u[0] + motion.strain[0] * x[0], u[1] + motion.strain[1] * x[1], u[2] + motion.strain[2] * x[2]);
     }
 }
 
 template <typename Force>
-Vec3 ContactNetwork::gather_chunk(std::size_t index, const Vec3& strain, const std::vector<double>& total, Motion& forces,
-                                  const Force& force) const {
+Vec3 ContactNetwork::gather_chunk(std::size_t index, const Vec3& strain, const std::vector<linalg::WideQuad>& total,
+                                  Motion& forces, const Force& force) const {
     const Chunk& chunk = chunks_[index];
-    double* target = forces.displacement.data();
-    std::fill(target + 3 * chunk.first_particle, target + 3 * chunk.last_particle, 0.0);
-    gather_range<true, true>(chunk.begin, chunk.first_only, total.data(), target, force);
-    gather_range<true, false>(chunk.first_only, chunk.second_only, total.data(), target, force);
-    gather_range<false, true>(chunk.second_only, chunk.crossing, total.data(), target, force);
-    Vec3 sum = gather_crossing(chunk, strain, total.data(), target, force);
+    std::array<linalg::WideQuad, chunk_particles> sums{};
+    const auto sum_of = [&](std::int32_t particle) -> linalg::WideQuad& {
+        return sums[static_cast<std::size_t>(particle) - chunk.first_particle];
+    };
+    const auto motion_of = [&](std::size_t entry) -> linalg::WideQuad {
+        return {total[static_cast<std::size_t>(second[entry])].lanes - total[static_cast<std::size_t>(first[entry])].lanes};
+    };
+    for_entries(chunk.begin, chunk.first_only, motion_of, force, [&](std::size_t entry, linalg::WideQuad f) {
+        sum_of(first[entry]).lanes -= f.lanes;
+        sum_of(second[entry]).lanes += f.lanes;
+    });
+    for_entries(chunk.first_only, chunk.second_only, motion_of, force,
+                [&](std::size_t entry, linalg::WideQuad f) { sum_of(first[entry]).lanes -= f.lanes; });
+    for_entries(chunk.second_only, chunk.crossing, motion_of, force,
+                [&](std::size_t entry, linalg::WideQuad f) { sum_of(second[entry]).lanes += f.lanes; });
+    Vec3 sum = Vec3::Zero();
+    const auto through_face = [&](std::size_t entry) -> linalg::WideQuad {
+        const Vec3& l = shift(chunk, entry);
+        return {motion_of(entry).lanes + linalg::wide_quad(strain[0] * l[0], strain[1] * l[1], strain[2] * l[2]).lanes};
+    };
+    for_entries(chunk.crossing, chunk.end, through_face, force, [&](std::size_t entry, linalg::WideQuad f) {
+        if (owns_first(chunk, entry)) {
+            sum += f.vector().cwiseProduct(shift(chunk, entry));
+            sum_of(first[entry]).lanes -= f.lanes;
+        }
+        if (owns_second(chunk, entry)) sum_of(second[entry]).lanes += f.lanes;
+    });
     // Sum of f * l: with l = x_j + shift - x_i it is the sum of the particles' forces times their positions, and the shifts.
-    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row)
-        sum += Eigen::Map<const Vec3>(target + 3 * row).cwiseProduct(position_[row]);
+    for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
+        const Vec3 f = sums[row - chunk.first_particle].vector();
+        Eigen::Map<Vec3>(&forces.displacement[3 * row]) = f;
+        sum += f.cwiseProduct(position_[row]);
+    }
     return sum;
 }
 
 template <typename Force>
-void ContactNetwork::gather(const Motion& motion, Motion& forces, std::vector<double>& total, const Force& force) const {
+void ContactNetwork::gather(const Motion& motion, Motion& forces, std::vector<linalg::WideQuad>& total, const Force& force) const {
     for_chunks([&](std::size_t chunk) { displace(chunk, motion, total); });
-    std::vector<Vec3> work(chunks_.size());
-    for_chunks([&](std::size_t chunk) { work[chunk] = gather_chunk(chunk, motion.strain, total, forces, force); });
-    forces.strain.setZero();
-    for (const Vec3& part : work) forces.strain += part;
+    forces.strain = sum_chunks<Vec3>(Vec3::Zero(), [&](std::size_t chunk) {
+        return linalg::in_widest_registers([&] { return gather_chunk(chunk, motion.strain, total, forces, force); });
+    });
 }
 
 }  // namespace kiln::sintering

@@ -11,26 +11,30 @@ namespace {
 constexpr double negligible = 1e-6;  // of the mean over the particles
 
 double worst_of(const Motion& left, std::span<const double> scale, double least) {
-    double worst = 0.0;
-    for (std::size_t row = 0; row < scale.size(); ++row)
-        worst = std::max(worst, Eigen::Map<const Vec3>(&left.displacement[3 * row]).norm() / std::max(scale[row], least));
-    return worst;
+    return greatest_of_rows(scale.size(), 0.0, [&](std::size_t row) {
+        return Eigen::Map<const Vec3>(&left.displacement[3 * row]).norm() / std::max(scale[row], least);
+    });
 }
 
 }  // namespace
 
-double max_imbalance(std::span<const Pair> pairs, std::span<const double> exerted, std::span<const RigidClusters> coarse,
-                     const Motion& left) {
-    const std::size_t particles = left.displacement.size() / 3;
-    std::vector<double> scale(particles, 0.0);
-    double sum = 0.0;
-    for (std::size_t row = 0; row < pairs.size(); ++row) {
-        scale[static_cast<std::size_t>(pairs[row].i)] += exerted[row];
-        scale[static_cast<std::size_t>(pairs[row].j)] += exerted[row];
-        sum += 2.0 * exerted[row];
-    }
+double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs, std::span<const double> exerted,
+                     std::span<const RigidClusters> coarse, const Motion& left) {
+    std::vector<double> scale(network.particles(), 0.0);
+    const double sum = network.sum_chunks(0.0, [&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network.chunks()[index];
+        for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry)
+            for (const std::int32_t particle : {network.first[entry], network.second[entry]}) {
+                const auto row = static_cast<std::size_t>(particle);
+                if (row >= chunk.first_particle && row < chunk.last_particle)
+                    scale[row] += exerted[static_cast<std::size_t>(network.pair[entry])];
+            }
+        double part = 0.0;
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) part += scale[row];
+        return part;
+    });
     if (!(sum > 0.0)) return 0.0;
-    const double least = negligible * sum / static_cast<double>(particles);
+    const double least = negligible * sum / static_cast<double>(network.particles());
     double worst = worst_of(left, scale, least);
     for (const RigidClusters& clusters : coarse) {
         scale.assign(clusters.nodes(), 0.0);

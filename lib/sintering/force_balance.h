@@ -12,7 +12,7 @@ namespace kiln::sintering {
 /// contacts of that cluster with others, exert if all add up. exerted: size of each pair's force; left: what is left on each
 /// particle, in the same unit. A particle on which next to nothing acts is held against a millionth of what acts on one in the
 /// mean.
-double max_imbalance(std::span<const Pair> pairs, std::span<const double> exerted, std::span<const RigidClusters> coarse,
-                     const Motion& left);
+double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs, std::span<const double> exerted,
+                     std::span<const RigidClusters> coarse, const Motion& left);
 
 }  // namespace kiln::sintering

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/contacts.h"
 #include "physics/sinter_contact.h"
@@ -43,33 +44,26 @@ double touching_fraction(double start, double end) {
 }
 
 /// Force by which the viscosity of a contact resists an approach over the step; cubic: K/I.
-double pair_resistance(double cubic, double overlap, double approach) {
-    const double start = std::max(0.0, overlap), reached = std::max(0.0, overlap + approach);
+template <typename Number>
+Number pair_resistance(Number cubic, Number overlap, Number approach) {
+    const Number start = physics::positive(overlap), reached = physics::positive(overlap + approach), zero{};
     // While both touch the approach is taken as it is: the difference of overlaps would be the rounding of a slow contact's.
-    const double change = overlap > 0.0 && reached > 0.0 ? approach : reached - start;
+    const Number difference = reached - start, change = (overlap > zero) & (reached > zero) ? approach : difference;
     return cubic * physics::mean_viscosity_shape(start, reached) * change;
 }
 
 double slowest_of(std::span<const PairStep> step) {
-    double slowest = 0.0;
-    for (const PairStep& pair : step) slowest = std::max(slowest, pair.slowness);
-    return slowest;
+    return greatest_of_rows(step.size(), 0.0, [&](std::size_t row) { return step[row].slowness; });
 }
 
 /// Coarse spaces of the pairs that touch; one that does not touch yet ties nothing.
 std::vector<RigidClusters> coarse_spaces_of(const Box& box, std::span<const Vec3> position, std::span<const Pair> pairs,
-                                            std::span<const PairStep> step) {
-    if (slowest_of(step) < coarse_contrast) return {};
+                                            std::span<const PairStep> step, double slowest) {
+    if (slowest < coarse_contrast) return {};
     std::vector<double> slowness;
     slowness.reserve(step.size());
     for (const PairStep& pair : step) slowness.push_back(pair.overlap >= 0.0 ? pair.slowness : 0.0);
     return coarse_spaces(box, position, pairs, slowness, coarse_contrast);
-}
-
-/// Overlap at the end of the step of a pair that nothing else holds, under its fraction of the driving force, m.
-double isolated_end_of(const PairStep& pair, double fraction) {
-    if (!(pair.cubic > 0.0)) return 0.0;
-    return physics::overlap_of_integral(pair.overlap, fraction * pair.force / pair.cubic);
 }
 
 }  // namespace
@@ -81,17 +75,23 @@ SinterStep::SinterStep(const Box& box, std::span<const Vec3> position, std::span
       step_(step),
       settings_(settings),
       network_(box, position, pairs),
-      coarse_(coarse_spaces_of(box, position, pairs, step)),
-      rows_(std::make_unique_for_overwrite<PairForce[]>(pairs.size())),
+      slowest_(slowest_of(step)),
+      coarse_(coarse_spaces_of(box, position, pairs, step, slowest_)),
       entries_(std::make_unique_for_overwrite<PairForce[]>(network_.pair.size())),
-      total_(3 * position.size()),
+      alone_(std::make_unique_for_overwrite<double[]>(pairs.size())),
+      resisting_(std::make_unique_for_overwrite<double[]>(network_.pair.size())),
+      branch_(step.size()),
+      total_(position.size()),
       driving_forces_(position.size()),
       unbalanced_(position.size()),
       direction_(position.size()) {
-    branch_.resize(step.size());
-    for_rows(step.size(), [&](std::size_t row) { branch_[row] = step[row].branch; });
-    limited_ = std::ranges::any_of(step, [](const PairStep& pair) { return !std::isinf(pair.limit); });
-    if (slowest_of(step) <= single_contrast)
+    for_rows(step.size(), [&](std::size_t row) {
+        const PairStep& pair = step[row];
+        branch_[row] = pair.branch;
+        alone_[row] = pair.cubic > 0.0 ? physics::overlap_of_integral(pair.overlap, pair.force / pair.cubic) : 0.0;
+    });
+    limited_ = join_rows(step.size(), false, [&](std::size_t row) { return !std::isinf(step[row].limit); }, std::logical_or());
+    if (slowest_ <= single_contrast)
         solver_ = std::make_unique<TangentSolver<float>>(box, network_, pairs, coarse_);
     else
         solver_ = std::make_unique<TangentSolver<double>>(box, network_, pairs, coarse_);
@@ -103,60 +103,63 @@ Vec3 SinterStep::relative(std::size_t row, const Motion& motion) const {
     return b - a + motion.strain.cwiseProduct(branch_[row]);
 }
 
-SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double fraction, double isolated_end,
-                                             double end_overlap) const {
+double SinterStep::isolated_end(std::size_t row, double fraction) const {
+    const PairStep& pair = step_[row];
+    if (fraction == 1.0 || !(pair.cubic > 0.0)) return alone_[row];
+    return physics::overlap_of_integral(pair.overlap, fraction * pair.force / pair.cubic);
+}
+
+inline SinterStep::PairForce SinterStep::pair_force(std::size_t row, const Vec3& normal, double fraction, double isolated_end,
+                                                    double end_overlap) const {
     const PairStep& pair = step_[row];
     const double mean_overlap = 0.5 * (std::max(pair.overlap, 0.0) + std::max(end_overlap, 0.0));
     return {normal, pair.overlap, pair.cubic, isolated_end, fraction * pair.force, pair.shear * fraction * mean_overlap};
 }
 
 void SinterStep::start_geometry() {
-    for_rows(step_.size(), [&](std::size_t row) {
-        const PairStep& pair = step_[row];
-        const double fraction = pair.overlap >= 0.0 ? 1.0 : 0.0, isolated_end = isolated_end_of(pair, fraction);
-        // Shear by the overlap that the pair alone would come to: at the start of the step a new contact has no neck to resist.
-        rows_[row] = pair_force(row, pair.vector / pair.distance, fraction, isolated_end, isolated_end);
-    });
     pressure_volume_ = settings_.pressure * box_.volume();
-    take_geometry();
+    take_geometry(Motion(network_.particles()), [&](std::size_t row, const Vec3&) {
+        const PairStep& pair = step_[row];
+        const double fraction = pair.overlap >= 0.0 ? 1.0 : 0.0, end = isolated_end(row, fraction);
+        // Shear by the overlap that the pair alone would come to: at the start of the step a new contact has no neck to resist.
+        return pair_force(row, pair.vector / pair.distance, fraction, end, end);
+    });
 }
 
 void SinterStep::midpoint_geometry(const Motion& motion) {
-    for_rows(step_.size(), [&](std::size_t row) {
-        const PairStep& pair = step_[row];
-        const Vec3 end = pair.vector + relative(row, motion);
-        const double end_overlap = pair.overlap + pair.distance - end.norm();
-        const double fraction = touching_fraction(pair.overlap, end_overlap);
-        rows_[row] = pair_force(row, (pair.vector + end).normalized(), fraction, isolated_end_of(pair, fraction), end_overlap);
-    });
     const Vec3 stretch = Vec3::Ones() + 0.5 * motion.strain;  // the pressure acts on the faces of the box as they are half way
     pressure_volume_ = settings_.pressure * box_.volume() * stretch.prod();
     pressure_volume_ = pressure_volume_.cwiseQuotient(stretch);
-    take_geometry();
+    take_geometry(motion, [&](std::size_t row, const Vec3& du) {
+        const PairStep& pair = step_[row];
+        const Vec3 end = pair.vector + du;
+        const double end_overlap = pair.overlap + pair.distance - end.norm();
+        const double fraction = touching_fraction(pair.overlap, end_overlap);
+        return pair_force(row, (pair.vector + end).normalized(), fraction, isolated_end(row, fraction), end_overlap);
+    });
 }
 
-/// Brings what does not change between Newton's iterations into the order of the network.
-void SinterStep::take_geometry() {
+/// Takes what does not change between Newton's iterations: force_of(pair, its relative motion).
+template <typename ForceOf>
+void SinterStep::take_geometry(const Motion& motion, const ForceOf& force_of) {
     std::visit([&](auto& solver) {
-        network_.for_chunks([&](std::size_t index) {
-            const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-            for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry) {
-                entries_[entry] = rows_[static_cast<std::size_t>(network_.pair[entry])];
-                solver->springs().set_direction(entry, entries_[entry].normal);
-            }
+        network_.gather(motion, driving_forces_, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
+            const PairForce pair = force_of(static_cast<std::size_t>(network_.pair[entry]), du);
+            entries_[entry] = pair;
+            solver->springs().set_direction(entry, pair.normal);
+            return pair.driving * pair.normal;
         });
     }, solver_);
-    const Motion rest(network_.particles());
-    network_.gather(rest, driving_forces_, total_,
-                    [&](std::size_t entry, const Vec3&) -> Vec3 { return entries_[entry].driving * entries_[entry].normal; });
     start_limits();
 }
 
 void SinterStep::start_limits() {
     if (!limited_) return;
     double stiffness = 0.0;
-    for (const PairForce& pair : std::span(rows_.get(), step_.size()))
+    for (std::size_t row = 0; row < step_.size(); ++row) {
+        const PairForce& pair = force_of(row);
         stiffness += pair.driving > 0.0 ? pair.cubic * physics::viscosity_shape(pair.isolated_end) : 0.0;
+    }
     const double spring = limit_stiffness * stiffness / static_cast<double>(std::max<std::size_t>(step_.size(), 1));
     limits_.reset(step_.size());
     for (std::size_t row = 0; row < step_.size(); ++row) {
@@ -165,31 +168,56 @@ void SinterStep::start_limits() {
         const double start = std::max(0.0, pair.overlap), reached = std::max(0.0, pair.overlap + pair.limit);
         const bool yields = pair.spring > 0.0;
         const double alone =  // force at the limit if nothing else held the pair
-            std::max(0.0, rows_[row].driving - pair.cubic * physics::viscosity_integral(start, reached));
+            std::max(0.0, force_of(row).driving - pair.cubic * physics::viscosity_integral(start, reached));
         limits_.add(row, pair.limit, yields ? 0.0 : alone, yields ? pair.spring : spring);
     }
 }
 
-template <typename Real>
+template <bool limited, typename Real>
 void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool secant) {
-    network_.gather(motion, unbalanced_, total_, [&](std::size_t entry, const Vec3& du) -> Vec3 {
-        const PairForce& pair = entries_[entry];
-        const double along = pair.normal.dot(du);  // opening
-        const double reached = std::max(0.0, pair.overlap - along);
-        const double resistance = pair_resistance(pair.cubic, pair.overlap, -along);
+    using Lanes = linalg::WideQuad::Lanes;
+    const auto columns_at = [](const double* first, std::size_t stride, std::size_t last) {
+        const auto row = [&](std::size_t k) { return linalg::load(first + stride * std::min(k, last)).lanes; };
+        return FourByFour{row(0), row(1), row(2), row(3)}.transposed();
+    };
+    network_.gather(motion, unbalanced_, total_, [&](std::size_t entry, std::size_t count, const Fours& du) -> Fours {
+        constexpr std::size_t stride = sizeof(PairForce) / sizeof(double);
+        const double* const pairs = entries_[entry].normal.data();
+        const auto [x, y, z, overlap] = columns_at(pairs, stride, count - 1);
+        const auto [cubic, isolated_end, driving, tangential] = columns_at(pairs + 4, stride, count - 1);
+        const Lanes along = x * du.x + y * du.y + z * du.z;  // opening
+        const Lanes reached = physics::positive(overlap - along), zero{};
+        const Lanes resistance = pair_resistance(cubic, overlap, -along);
         // A contact that has hardly closed has no tangent yet: take the secant towards where the pair alone would end, or at least
         // a part of the tangent there.
-        const double least = secant ? physics::mean_viscosity_shape(pair.isolated_end, reached)
-                                    : min_tangent * physics::viscosity_shape(pair.isolated_end);
-        const auto row = static_cast<std::size_t>(network_.pair[entry]);
-        const double limit = limits_.any() ? limits_.reaction(row, -along) : 0.0;
-        double tangent = pair.cubic * std::max(physics::viscosity_shape(reached), reached < pair.isolated_end ? least : 0.0);
-        if (limit > 0.0) tangent += limits_.tangent(row, -along, pair.driving - resistance);
-        else if (limits_.any()) tangent = std::max(tangent, limits_.tangent(row, -along, pair.driving - resistance));
-        solver.springs().set(entry, tangent, pair.tangential);
-        return (pair.driving - resistance - limit - pair.tangential * along) * pair.normal +
-               pair.tangential * du;
+        const Lanes least = secant ? physics::mean_viscosity_shape(isolated_end, reached)
+                                   : min_tangent * physics::viscosity_shape(isolated_end);
+        const Lanes shape = physics::viscosity_shape(reached);
+        const Lanes floor = (reached < isolated_end) & (least > shape) ? least : shape;
+        Lanes tangent = cubic * floor, limit{};
+        if constexpr (limited)
+            for (std::size_t k = 0; k < count; ++k) {
+                const auto row = static_cast<std::size_t>(network_.pair[entry + k]);
+                const double held = limits_.tangent(row, -along[k], driving[k] - resistance[k]);
+                limit[k] = limits_.reaction(row, -along[k]);
+                tangent[k] = limit[k] > 0.0 ? tangent[k] + held : std::max(tangent[k], held);
+            }
+        const Lanes resisting = (resistance < zero ? -resistance : resistance) + limit;
+        for (std::size_t k = 0; k < count; ++k) {
+            resisting_[entry + k] = resisting[k];
+            solver.springs().set(entry + k, tangent[k], tangential[k]);
+        }
+        const Lanes normal_force = driving - resistance - limit - tangential * along;
+        return {normal_force * x + tangential * du.x, normal_force * y + tangential * du.y,
+                normal_force * z + tangential * du.z};
     });
+}
+
+void SinterStep::forces(const Motion& motion, bool secant) {
+    std::visit([&](auto& solver) {
+        if (limits_.any()) forces<true>(*solver, motion, secant);
+        else forces<false>(*solver, motion, secant);
+    }, solver_);
     strain_force_ = unbalanced_.strain;
     unbalanced_.strain += pressure_volume_;
     project(unbalanced_, settings_.allowed_strain);
@@ -197,24 +225,21 @@ void SinterStep::forces(TangentSolver<Real>& solver, const Motion& motion, bool 
     if (!std::isfinite(work_)) throw Error("a step of sintering meets a force that is not a finite number");
 }
 
-void SinterStep::forces(const Motion& motion, bool secant) {
-    std::visit([&](auto& solver) { forces(*solver, motion, secant); }, solver_);
-}
-
-double SinterStep::imbalance(const Motion& motion) const {
+double SinterStep::imbalance() const {
     std::vector<double> exerted(step_.size());
-    for_rows(step_.size(), [&](std::size_t row) {
-        // Of a pair that touches for a part of the step the whole sintering force: the part may be next to nothing.
-        const double approach = -rows_[row].normal.dot(relative(row, motion));
-        const double resistance = pair_resistance(rows_[row].cubic, rows_[row].overlap, approach);
-        exerted[row] = step_[row].force + std::abs(resistance) + (limits_.any() ? limits_.reaction(row, approach) : 0.0);
+    // Of a pair that touches for a part of the step the whole sintering force: the part may be next to nothing.
+    Vec3 on_box = network_.sum_chunks<Vec3>(pressure_volume_.cwiseAbs(), [&](std::size_t chunk) {
+        Vec3 part = Vec3::Zero();
+        network_.for_owned(chunk, [&](std::size_t entry) {
+            const auto row = static_cast<std::size_t>(network_.pair[entry]);
+            exerted[row] = step_[row].force + resisting_[entry];
+            part += exerted[row] * entries_[entry].normal.cwiseProduct(branch_[row]).cwiseAbs();
+        });
+        return part;
     });
-    Vec3 on_box = pressure_volume_.cwiseAbs();
-    for (std::size_t row = 0; row < step_.size(); ++row)
-        on_box += exerted[row] * rows_[row].normal.cwiseProduct(branch_[row]).cwiseAbs();
     // On the box: what its axes share out among those that strain together.
     on_box = settings_.allowed_strain.cwiseAbs() * on_box;
-    double worst = max_imbalance(pairs_, exerted, coarse_, unbalanced_);
+    double worst = max_imbalance(network_, pairs_, exerted, coarse_, unbalanced_);
     const auto judge_box = [&](const Vec3& left) {
         for (int axis = 0; axis < 3; ++axis)
             if (left[axis] != 0.0) worst = std::max(worst, std::abs(left[axis]) / on_box[axis]);
@@ -282,7 +307,7 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
         }
         if (now >= tolerance) continue;
         if (!balance) return true;
-        report.imbalance = imbalance(motion);
+        report.imbalance = imbalance();
         if (report.imbalance <= balanced) return true;
         if (sufficient == 0.0) return false;  // nothing that is left moves anything
         sufficient = slope > 0.0 ? square(sharpening) * sufficient : 0.0;
@@ -294,7 +319,7 @@ bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepRe
     bool converged = newton(tolerance, balance, motion, report);
     for (int pass = 0; converged && limits_.any(); ++pass) {
         const double missed = limits_.update(
-            [&](std::size_t row) { return -rows_[row].normal.dot(relative(row, motion)); },
+            [&](std::size_t row) { return approach(row, motion); },
             [&](std::size_t row) {
                 const bool may_yield = step_[row].spring > 0.0 && pass >= settings_.limit_corrections;
                 return may_yield ? HUGE_VAL : limit_accuracy * step_[row].reduced_radius;
@@ -307,23 +332,56 @@ bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepRe
 }
 
 void SinterStep::remove_drift(Motion& motion) const {
-    const std::size_t count = network_.particles();
-    Clusters clusters(count);
-    for (std::size_t row = 0; row < pairs_.size(); ++row) {
+    Clusters clusters(network_.particles());
+    const auto join = [&](std::size_t entry) {
+        const auto row = static_cast<std::size_t>(network_.pair[entry]);
         const bool held = limits_.any() && limits_.holds(row);
-        if (rows_[row].driving > 0.0 || step_[row].overlap > 0.0 || held) clusters.join(pairs_[row].i, pairs_[row].j);
+        if (entries_[entry].driving > 0.0 || step_[row].overlap > 0.0 || held)
+            clusters.join(network_.first[entry], network_.second[entry]);
+    };
+    network_.for_chunks([&](std::size_t index) {  // within a chunk, no row of which leads out of it
+        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+        for (std::size_t entry = chunk.begin; entry < chunk.first_only; ++entry) join(entry);
+    });
+    for (const ContactNetwork::Chunk& chunk : network_.chunks()) {
+        for (std::size_t entry = chunk.first_only; entry < chunk.second_only; ++entry) join(entry);
+        for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) join(entry);
     }
-    std::vector<Vec3> drift(count, Vec3::Zero());
-    std::vector<double> members(count, 0.0);
-    for (std::size_t row = 0; row < count; ++row) {
-        const auto cluster = static_cast<std::size_t>(clusters.root(static_cast<std::int32_t>(row)));
-        drift[cluster] += Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
-        members[cluster] += 1.0;
-    }
-    for (std::size_t row = 0; row < count; ++row) {
-        const auto cluster = static_cast<std::size_t>(clusters.root(static_cast<std::int32_t>(row)));
-        Eigen::Map<Vec3>(&motion.displacement[3 * row]) -= drift[cluster] / members[cluster];
-    }
+    struct Share {
+        std::size_t root;
+        Vec3 drift;
+        double members;
+    };
+    // Of each chunk: its first particle's cluster, then the others as they come.
+    std::vector<std::vector<Share>> shares(network_.chunks().size());
+    std::vector<std::int32_t> roots(network_.particles());
+    network_.for_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+        std::vector<Share>& own = shares[index];
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
+            roots[row] = clusters.root_of(static_cast<std::int32_t>(row));
+            const auto root = static_cast<std::size_t>(roots[row]);
+            const bool first = !own.empty() && own.front().root == root;
+            if (!first && (own.empty() || own.back().root != root)) own.push_back({root, Vec3::Zero(), 0.0});
+            Share& share = first ? own.front() : own.back();
+            share.drift += Eigen::Map<const Vec3>(&motion.displacement[3 * row]);
+            share.members += 1.0;
+        }
+    });
+    std::vector<Vec3> drift(network_.particles(), Vec3::Zero());
+    std::vector<double> members(network_.particles(), 0.0);
+    for (const std::vector<Share>& own : shares)
+        for (const Share& share : own) {
+            drift[share.root] += share.drift;
+            members[share.root] += share.members;
+        }
+    network_.for_chunks([&](std::size_t index) {
+        const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+        for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) {
+            const auto root = static_cast<std::size_t>(roots[row]);
+            Eigen::Map<Vec3>(&motion.displacement[3 * row]) -= drift[root] / members[root];
+        }
+    });
 }
 
 StepReport SinterStep::first_order(Motion& motion) {

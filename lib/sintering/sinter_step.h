@@ -80,12 +80,18 @@ class SinterStep {
     };
     /// Relative motion of pair `row` under a motion, m.
     Vec3 relative(std::size_t row, const Motion& motion) const;
+    const PairForce& force_of(std::size_t row) const { return entries_[network_.entry_of(row)]; }
+    /// The approach of pair `row` under a motion, m.
+    double approach(std::size_t row, const Motion& motion) const { return -force_of(row).normal.dot(relative(row, motion)); }
+    /// Overlap at the end of the step of a pair that nothing else holds and that touches for a fraction of it, m.
+    double isolated_end(std::size_t row, double fraction) const;
     /// Of a pair with this normal that touches for a fraction of the step; isolated_end, end_overlap: overlap at the end, alone
     /// and expected.
     PairForce pair_force(std::size_t row, const Vec3& normal, double fraction, double isolated_end, double end_overlap) const;
     void start_geometry();
     void midpoint_geometry(const Motion& motion);
-    void take_geometry();
+    template <typename ForceOf>
+    void take_geometry(const Motion& motion, const ForceOf& force_of);
     void start_limits();
     /// balance: also the forces on each particle are to be in balance.
     bool minimise(double tolerance, bool balance, Motion& motion, StepReport& report);
@@ -93,10 +99,10 @@ class SinterStep {
     double line_search(double slope, Motion& motion);
     /// The forces that a motion leaves unbalanced, and the stiffness there.
     void forces(const Motion& motion, bool secant);
-    template <typename Real>
+    template <bool limited, typename Real>
     void forces(TangentSolver<Real>& solver, const Motion& motion, bool secant);
     /// Largest unbalanced force of the last call of forces(), see StepReport.
-    double imbalance(const Motion& motion) const;
+    double imbalance() const;
     void remove_drift(Motion& motion) const;
 
     Box box_;
@@ -104,13 +110,16 @@ class SinterStep {
     std::span<const PairStep> step_;
     StepSettings settings_;
     ContactNetwork network_;
+    double slowest_ = 0.0;  // of any pair, see PairStep
     std::vector<RigidClusters> coarse_;  // of particles that slow contacts tie together
     std::variant<std::unique_ptr<TangentSolver<float>>, std::unique_ptr<TangentSolver<double>>> solver_;
     bool limited_ = false;  // any pair
     UnilateralConstraints limits_;
-    std::unique_ptr<PairForce[]> rows_, entries_;  // of the pairs, and in the order of the network
-    std::vector<Vec3> branch_;               // a row a pair, m
-    std::vector<double> total_;
+    std::unique_ptr<PairForce[]> entries_;  // in the order of the network
+    std::unique_ptr<double[]> alone_;       // overlap of each pair at the end of the step if it touches throughout, m
+    std::unique_ptr<double[]> resisting_;   // by how much each entry and its limit resisted in the last call of forces()
+    std::vector<Vec3> branch_;              // a row a pair, m
+    std::vector<linalg::WideQuad> total_;
     Motion driving_forces_, unbalanced_, direction_;  // driving_forces_: the driving forces alone
     Vec3 pressure_volume_ = Vec3::Zero();  // work of the pressure for a unit strain along each axis
     Vec3 strain_force_ = Vec3::Zero();     // work of the contacts for the same, in the last call of forces()

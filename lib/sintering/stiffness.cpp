@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "linalg/wide_registers.h"
+
 namespace kiln::sintering {
 
 namespace {
@@ -30,7 +32,7 @@ template <typename Real>
 void Stiffness<Real>::assemble(std::span<const Vec3> branch) {
     of_strain_ = network_.sum_chunks<Eigen::Matrix3d>(Eigen::Matrix3d::Zero(), [&](std::size_t chunk) {
         factor_.factorise(ranges_[chunk]);
-        return find_strain_forces(chunk, branch);
+        return linalg::in_widest_registers([&] { return find_strain_forces(chunk, branch); });
     });
     strain_inverse_ = linalg::pivot_inverse(of_strain_, of_strain_, min_strain_pivot);
 }
@@ -61,25 +63,6 @@ Eigen::Matrix3d Stiffness<Real>::find_strain_forces(std::size_t index, std::span
     Eigen::Matrix3d part;
     for (int axis = 0; axis < 3; ++axis) part.col(axis) = work[static_cast<std::size_t>(axis)].vector();
     return 0.5 * (part + part.transpose());
-}
-
-template <typename Real>
-void Stiffness<Real>::add_outer(std::size_t index, const std::vector<Quad<Real>>& displacement, Quad<Real>* sums) const {
-    const ContactNetwork::Chunk& chunk = network_.chunks()[index];
-    const auto add = [&](std::size_t entry, std::int32_t own, std::int32_t other) {
-        sums[static_cast<std::size_t>(own) - chunk.first_particle] +=
-            springs_.product(entry, displacement[static_cast<std::size_t>(other)]);
-    };
-    for (std::size_t entry = chunk.first_only; entry < chunk.second_only; ++entry)
-        add(entry, network_.first[entry], network_.second[entry]);
-    for (std::size_t entry = chunk.second_only; entry < chunk.crossing; ++entry)
-        add(entry, network_.second[entry], network_.first[entry]);
-    for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
-        const std::int32_t first = network_.first[entry], second = network_.second[entry];
-        if (first == second) continue;  // its own image: no relative motion but by strain
-        if (network_.owns_first(chunk, entry)) add(entry, first, second);
-        if (network_.owns_second(chunk, entry)) add(entry, second, first);
-    }
 }
 
 template class Stiffness<float>;

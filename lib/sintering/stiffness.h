@@ -63,4 +63,23 @@ class Stiffness {
     Eigen::Matrix3d of_strain_ = Eigen::Matrix3d::Zero(), strain_inverse_ = Eigen::Matrix3d::Zero();
 };
 
+template <typename Real>
+void Stiffness<Real>::add_outer(std::size_t index, const std::vector<Quad<Real>>& displacement, Quad<Real>* sums) const {
+    const ContactNetwork::Chunk& chunk = network_.chunks()[index];
+    const auto add = [&](std::size_t entry, std::int32_t own, std::int32_t other) {
+        sums[static_cast<std::size_t>(own) - chunk.first_particle] +=
+            springs_.product(entry, displacement[static_cast<std::size_t>(other)]);
+    };
+    for (std::size_t entry = chunk.first_only; entry < chunk.second_only; ++entry)
+        add(entry, network_.first[entry], network_.second[entry]);
+    for (std::size_t entry = chunk.second_only; entry < chunk.crossing; ++entry)
+        add(entry, network_.second[entry], network_.first[entry]);
+    for (std::size_t entry = chunk.crossing; entry < chunk.end; ++entry) {
+        const std::int32_t first = network_.first[entry], second = network_.second[entry];
+        if (first == second) continue;  // its own image: no relative motion but by strain
+        if (network_.owns_first(chunk, entry)) add(entry, first, second);
+        if (network_.owns_second(chunk, entry)) add(entry, second, first);
+    }
+}
+
 }  // namespace kiln::sintering

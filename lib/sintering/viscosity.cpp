@@ -66,7 +66,7 @@ class Response {
           network_(box, position, contacts.pairs),
           coarse_(coarse_spaces(box, position, contacts.pairs, contacts.slowness, coarse_contrast)),
           solver_(box, network_, contacts.pairs, coarse_),
-          total_(3 * network_.particles()) {
+          total_(network_.particles()) {
         for (const double value : contacts.normal) unit_ = std::max(unit_, value);
         for (std::size_t entry = 0; entry < network_.pair.size(); ++entry) {
             const auto row = static_cast<std::size_t>(network_.pair[entry]);
@@ -112,7 +112,7 @@ class Response {
             add(network_, 1.0, correction, field.motion);
             find_forces(field);
             field.converged = solve.error2 <= sufficient &&
-                              max_imbalance(contacts_.pairs, exerted, coarse_, field.forces) <= balance;
+                              max_imbalance(network_, contacts_.pairs, exerted, coarse_, field.forces) <= balance;
             if (field.converged) break;
         }
         return field;
@@ -149,7 +149,7 @@ class Response {
     ContactNetwork network_;
     std::vector<RigidClusters> coarse_;
     TangentSolver<double> solver_;
-    std::vector<double> total_;
+    std::vector<linalg::WideQuad> total_;
     double unit_ = 0.0;  // the largest viscosity
 };
 

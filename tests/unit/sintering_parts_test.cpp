@@ -211,9 +211,11 @@ TEST_CASE("the balance of forces: a particle's by what acts on it, and a cluster
     exerted.back() = 1.0;  // the soft contact of the cluster of a hundred
     Motion left(101);
     for (std::size_t row = 0; row < 100; ++row) left.displacement[3 * row] = 0.01;
-    CHECK(max_imbalance(pairs, exerted, {}, left) < 1e-3);
-    const std::vector<RigidClusters> coarse{{cube(10.0, false), position, tied}};
-    CHECK(std::abs(max_imbalance(pairs, exerted, coarse, left) - 1.0) < 1e-12);
+    const Box box = cube(10.0, false);
+    const ContactNetwork network(box, position, pairs);
+    CHECK(max_imbalance(network, pairs, exerted, {}, left) < 1e-3);
+    const std::vector<RigidClusters> coarse{{box, position, tied}};
+    CHECK(std::abs(max_imbalance(network, pairs, exerted, coarse, left) - 1.0) < 1e-12);
 }
 
 TEST_CASE("the error of conjugate gradients is estimated from its own terms") {
