@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double limit_stiffness = 100.0;  // of the spring at a limit, over the stiffness of the contact there: it
                                            // yields by a part in a hundred of what the contact would do without
+constexpr std::size_t max_pieces = 32;     // of the list of pairs, that threads go through
 constexpr double harmless_overlap = 0.05;  // of the mean approach of contacts in a step, that a pair left out may reach
 
 /// Bounds of how much pairs close under a motion, without looking at where their particles are.
@@ -126,17 +128,35 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
                  start + candidate_motion * (expected(pair) - start) + reach > 0.0)
             kind[row] = 1;
     });
-    for (auto* part : {&pairs_, &chosen_, &left_out_, &touching_, &sticking_}) part->clear();
-    left_out_overlap_.clear();
-    for (std::size_t row = 0; row < list.size(); ++row) {
-        (kind[row] == 0 ? left_out_ : chosen_).push_back(list[row]);
-        if (kind[row] == 0) {
-            left_out_overlap_.push_back(overlap[row]);
-            continue;
-        }
-        if (kind[row] >= 2) touching_.push_back(list[row]);
-        (kind[row] == 3 ? sticking_ : pairs_).push_back(list[row]);
-    }
+    const std::size_t pieces = list.size() < worth_threads ? 1 : max_pieces;
+    const auto begin_of = [&](std::size_t piece) { return list.size() * piece / pieces; };
+    /// Sets `rows` to the pairs of those kinds in their order; also(place, row) is called for each.
+    const auto collect = [&](std::vector<Pair>& rows, const auto& is_of, const auto& resized, const auto& also) {
+        std::vector<std::size_t> place(pieces + 1, 0);
+        for_chunks(pieces, [&](std::size_t piece) {
+            place[piece + 1] = static_cast<std::size_t>(
+                std::count_if(kind.begin() + static_cast<std::ptrdiff_t>(begin_of(piece)),
+                              kind.begin() + static_cast<std::ptrdiff_t>(begin_of(piece + 1)), is_of));
+        });
+        std::partial_sum(place.begin(), place.end(), place.begin());
+        rows.resize(place.back());
+        resized(place.back());
+        for_chunks(pieces, [&](std::size_t piece) {
+            std::size_t at = place[piece];
+            for (std::size_t row = begin_of(piece); row < begin_of(piece + 1); ++row) {
+                if (!is_of(kind[row])) continue;
+                also(at, row);
+                rows[at++] = list[row];
+            }
+        });
+    };
+    const auto nothing = [](auto...) {};
+    collect(pairs_, [](std::uint8_t of) { return of == 1 || of == 2; }, nothing, nothing);
+    collect(chosen_, [](std::uint8_t of) { return of != 0; }, nothing, nothing);
+    collect(touching_, [](std::uint8_t of) { return of >= 2; }, nothing, nothing);
+    collect(sticking_, [](std::uint8_t of) { return of == 3; }, nothing, nothing);
+    collect(left_out_, [](std::uint8_t of) { return of == 0; }, [&](std::size_t size) { left_out_overlap_.resize(size); },
+            [&](std::size_t at, std::size_t row) { left_out_overlap_[at] = overlap[row]; });
     steps_.resize(pairs_.size());
     for_rows(pairs_.size(), [&](std::size_t row) { steps_[row] = pair_step(pairs_[row], diffusion, unit_); });
 }

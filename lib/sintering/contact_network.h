@@ -148,7 +148,8 @@ inline void ContactNetwork::displace(std::size_t chunk, const Motion& motion, st
     for (std::size_t row = chunks_[chunk].first_particle; row < chunks_[chunk].last_particle; ++row) {
         const double* u = &motion.displacement[3 * row];
         const Vec3& x = position_[row];
-        total[row] = linalg::wide_quad(u[0] + motion.strain[0] * x[0], u[1] + motion.strain[1] * x[1], u[2] + motion.strain[2] * x[2]);
+        const Vec3& e = motion.strain;
+        total[row] = linalg::wide_quad(u[0] + e[0] * x[0], u[1] + e[1] * x[1], u[2] + e[2] * x[2]);
     }
 }
 

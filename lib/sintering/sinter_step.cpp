@@ -334,9 +334,8 @@ bool SinterStep::minimise(double tolerance, bool balance, Motion& motion, StepRe
 void SinterStep::remove_drift(Motion& motion) const {
     Clusters clusters(network_.particles());
     const auto join = [&](std::size_t entry) {
-        const auto row = static_cast<std::size_t>(network_.pair[entry]);
-        const bool held = limits_.any() && limits_.holds(row);
-        if (entries_[entry].driving > 0.0 || step_[row].overlap > 0.0 || held)
+        const bool held = limits_.any() && limits_.holds(static_cast<std::size_t>(network_.pair[entry]));
+        if (entries_[entry].driving > 0.0 || entries_[entry].overlap > 0.0 || held)
             clusters.join(network_.first[entry], network_.second[entry]);
     };
     network_.for_chunks([&](std::size_t index) {  // within a chunk, no row of which leads out of it
