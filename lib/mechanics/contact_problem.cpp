@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t max_fields = 120;
 constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before their sum takes their place
+constexpr double response_tolerance = 0.1;        // of one linear solve; the next one takes up what it leaves
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
 constexpr double min_progress = 0.5;              // residual with a field over that without it, below that
 constexpr double min_force = 1e-9;                // of the measure of a load: contact forces below do not count as a measure
@@ -102,12 +103,12 @@ Vector ContactProblem::unbalanced(const ContactSet::Forces& forces) const {
     return rest;
 }
 
-/// Adds what the body does under unbalanced forces to the space; false if the space has it.
-bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
-    ReducedSpace::Response response = space_.response(solver_, unbalanced);
+/// Adds what the body in its contacts does under unbalanced forces to the space; false if the space has it.
+bool ContactProblem::add_response(const Vector& unbalanced, const linalg::Holding& holding, int& iterations) {
+    ReducedSpace::Response response = space_.response(solver_, unbalanced, holding, response_tolerance);
     iterations += response.iterations;
     const double unit = contacts_.max_approach(response.displacement);
-    if (!space_.add(solver_, response, unit)) return false;
+    if (!space_.add(response, unit)) return false;
     contacts_.add_field(space_, space_.fields() - 1);
     freedoms_.conservativeResize(freedoms_.size() + 1);
     freedoms_[freedoms_.size() - 1] = 0.0;
@@ -139,7 +140,10 @@ Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
         state.converged = settled && state.residual <= tolerance;
         before = freedoms_;
         before_residual = state.residual;
-        if (!stuck && state.residual > tolerance && space_.fields() < max_fields && add_response(rest, state.iterations)) continue;
+        const auto respond = [&] {
+            return add_response(rest, contacts_.holding(forces, freedoms_, space_.rigid_motions(), load.held), state.iterations);
+        };
+        if (!stuck && state.residual > tolerance && space_.fields() < max_fields && respond()) continue;
         before.resize(0);
         state.displacement = space_.displacement(freedoms_);
         if (contacts_.add_closed_pairs(space_, state.displacement)) continue;

@@ -66,18 +66,21 @@ std::array<linalg::SolveReport, 3> ElasticSolver::solve(const linalg::Batch<3>& 
     return linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_);
 }
 
-int ElasticSolver::respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations) {
+int ElasticSolver::respond(const Vector& load, const linalg::Holding& holding, Vector& displacement, Vector& force,
+                           double tolerance, int max_iterations) {
     if (other_) {
         const int iterations = solve(load, displacement, tolerance, max_iterations).iterations;
         forces(displacement, force);
         return iterations;
     }
     Vector rest;
-    const int iterations =
-        linalg::solve_roughly(matrix_, *preconditioner_, load, displacement, rest, tolerance, max_iterations, stop_);
+    const int iterations = linalg::solve_roughly(matrix_, holding, *preconditioner_, load, displacement, rest, tolerance,
+                                                 max_iterations, stop_);
     force = load;
     linalg::add(-1.0, rest, force);
     force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
+    if (!holding) return iterations;
+    for (const auto& [node, held] : holding([&](std::size_t at) { return displacement[at]; })) force[node] -= held;
     return iterations;
 }
 

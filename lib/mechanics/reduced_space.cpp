@@ -9,12 +9,11 @@ namespace kiln::mechanics {
 
 namespace {
 
-constexpr double response_tolerance = 0.1;  // of one linear solve; the next one takes up what it leaves
-constexpr double second_pass = 0.1;         // of a response's energy, below which rounding calls for another orthogonalisation
-constexpr double min_novelty = 1e-10;       // of a response's energy, that the space does not have already
+constexpr double min_novelty = 1e-10;       // of a response's energy: what the space does not have already
 constexpr std::size_t nodes_in_chunk = 256;
 
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+template <class Index>
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
 std::size_t chunks_of(std::size_t nodes) { return (nodes + nodes_in_chunk - 1) / nodes_in_chunk; }
 
@@ -113,59 +112,53 @@ void ReducedSpace::add_rigid_motion(const Vec3& shift, const Vec3& turn) {
     add_freedom();
 }
 
-ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load) const {
+ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load, const linalg::Holding& holding,
+                                              double tolerance) const {
     Response response;
-    Vector& displacement = response.displacement;
-    Vector held;
-    response.iterations = solver.respond(load, displacement, held, response_tolerance);
-    response.energy = linalg::dot(displacement, load);
-    const auto responses = static_cast<Eigen::Index>(responses_.size());
-    const Eigen::LDLT<Eigen::MatrixXd> elastic(stiffness_.bottomRightCorner(responses, responses));
-    double rest = 0.0;  // J, that the fields there do not have
-    for (int pass = 0; pass == 0 || (pass == 1 && rest < second_pass * response.energy); ++pass) {
-        for (const RigidMotion& motion : rigid_) {
-            const auto products = linalg::sum_over_chunks<2>(displacement.size(), [&](std::size_t first, std::size_t last) {
-                linalg::PerField<2> sum = linalg::PerField<2>::Zero();
-                for (std::size_t node = first; node < last; ++node) {
-                    const Vec6 rigid = this->displacement(motion, node);
-                    sum += linalg::PerField<2>(displacement[node].dot(rigid), rigid.squaredNorm());
-                }
-                return sum;
-            });
-            const double amplitude = products[0] / products[1];
-            for_rows(
-                displacement.size(),
-                [&](std::size_t node) { displacement[node] -= amplitude * this->displacement(motion, node); }, worth_threads);
-        }
-        if (responses == 0) break;
-        if (pass > 0) solver.forces(displacement, held);
-        const Eigen::VectorXd loads = work(held), amplitudes = elastic.solve(loads);
-        add_scaled(-1.0, amplitudes, displacement);
-        rest = response.energy - loads.dot(amplitudes);
-    }
+    response.iterations = solver.respond(load, holding, response.displacement, response.force, tolerance);
+    remove_rigid_motions(response.displacement);
     return response;
 }
 
-bool ReducedSpace::add(const ElasticSolver& solver, const Response& response, double unit) {
-    return unit > 0.0 && add_response(solver, response.displacement, unit, min_novelty * response.energy);
-}
-
-/// A displacement over a unit as a field; false if its energy is not above the least.
-bool ReducedSpace::add_response(const ElasticSolver& solver, const Vector& displacement, double unit, double min_energy) {
-    CompactField field(displacement.size());
-    Vector rounded(displacement.size()), force;
+/// Takes from a displacement what rigid motions have of it, by least squares.
+void ReducedSpace::remove_rigid_motions(Vector& displacement) const {
+    constexpr int most = 6;
+    using Sums = Eigen::Matrix<double, most, most + 1>;  // products with each other, and with the displacement
+    const auto count = static_cast<Eigen::Index>(rigid_.size());
+    Sums zero = Sums::Zero();
+    const Sums sums = sum_chunks(chunks_of(displacement.size()), zero, [&](std::size_t chunk) {
+        Sums sum = zero;
+        Eigen::Matrix<double, 6, most> motions = Eigen::Matrix<double, 6, most>::Zero();
+        for (std::size_t node = chunk * nodes_in_chunk; node < std::min(displacement.size(), (chunk + 1) * nodes_in_chunk); ++node) {
+            for (Eigen::Index k = 0; k < count; ++k) motions.col(k) = this->displacement(rigid_[at(k)], node);
+            sum.leftCols<most>() += motions.transpose() * motions;
+            sum.rightCols<1>() += motions.transpose() * displacement[node];
+        }
+        return sum;
+    });
+    const Eigen::VectorXd amplitude = sums.topLeftCorner(count, count).ldlt().solve(sums.topRightCorner(count, most + 1).rightCols<1>());
     for_rows(
         displacement.size(),
         [&](std::size_t node) {
-            field.set(node, displacement[node] / unit);
-            rounded[node] = field[node];
+            for (Eigen::Index k = 0; k < count; ++k) displacement[node] -= amplitude[k] * this->displacement(rigid_[at(k)], node);
         },
         worth_threads);
-    solver.forces(rounded, force);
-    const double energy = linalg::dot(rounded, force);
-    if (!(energy * unit * unit > min_energy)) return false;
-    const Eigen::VectorXd shared = work(force);
+}
+
+bool ReducedSpace::add(const Response& response, double unit) {
+    return unit > 0.0 && add_response(response.displacement, response.force, unit, min_novelty);
+}
+
+/// A displacement over a unit as a field, and the forces that hold it; false if next to nothing of its energy is new.
+bool ReducedSpace::add_response(const Vector& displacement, const Vector& force, double unit, double least) {
+    CompactField field(displacement.size());
+    for_rows(displacement.size(), [&](std::size_t node) { field.set(node, displacement[node] / unit); }, worth_threads);
+    const double energy = linalg::dot(displacement, force) / unit / unit;
+    const Eigen::VectorXd shared = work(force) / unit;
     const auto responses = static_cast<Eigen::Index>(responses_.size());
+    const auto there = stiffness_.bottomRightCorner(responses, responses);
+    const double novelty = responses > 0 ? energy - shared.dot(there.ldlt().solve(shared)) : energy;
+    if (!(novelty > least * energy)) return false;
     add_freedom();
     stiffness_.col(stiffness_.cols() - 1).segment(stiffness_.rows() - 1 - responses, responses) = shared;
     stiffness_.row(stiffness_.rows() - 1).segment(stiffness_.rows() - 1 - responses, responses) = shared.transpose();
@@ -181,7 +174,9 @@ void ReducedSpace::remove_last() {
 
 void ReducedSpace::replace_responses(const ElasticSolver& solver, const Vector& sum, double unit) {
     while (!responses_.empty()) remove_last();
-    add_response(solver, sum, unit, -1.0);
+    Vector force;
+    solver.forces(sum, force);
+    add_response(sum, force, unit, -1.0);
 }
 
 void ReducedSpace::soften(std::size_t bond, double share) {

@@ -35,14 +35,14 @@ class ReducedSpace {
     void add_rigid_motion(const Vec3& shift, const Vec3& turn);
 
     struct Response {
-        Vector displacement;
-        double energy = 0.0;  // J, of the load on the way, before what the space has was taken out
+        Vector displacement;  // m, without rigid motion
+        Vector force;         // N, that holds it
         int iterations = 0;   // of the linear solver
     };
-    /// What the bonds do under forces on the nodes (N), less what the space has of it.
-    Response response(ElasticSolver& solver, const Vector& load) const;
+    /// What the body does under forces on the nodes (N), to a tolerance. holding: of its contacts.
+    Response response(ElasticSolver& solver, const Vector& load, const linalg::Holding& holding, double tolerance) const;
     /// Takes a response as a field whose unit is so many of its own; false if there is next to nothing in it.
-    bool add(const ElasticSolver& solver, const Response& response, double unit);
+    bool add(const Response& response, double unit);
     void remove_last();
 
     /// What all responses add up to now.
@@ -63,7 +63,8 @@ class ReducedSpace {
     void add_scaled(double factor, const Eigen::VectorXd& amplitudes, Vector& displacement) const;
     Eigen::VectorXd amplitudes_of_responses(const Eigen::VectorXd& freedoms) const;
     void add_freedom();
-    bool add_response(const ElasticSolver& solver, const Vector& displacement, double unit, double min_energy);
+    bool add_response(const Vector& displacement, const Vector& force, double unit, double least);
+    void remove_rigid_motions(Vector& displacement) const;
 
     const BondNetwork& network_;
     Vec3 middle_;
