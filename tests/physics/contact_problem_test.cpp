@@ -1,4 +1,4 @@
-// contact_problem_test.cpp: the parts of the contact problem: a reduced space keeps its fields apart, contacts have a potential.
+// contact_problem_test.cpp: the parts of the contact problem: a reduced space knows what holds its fields, contacts have a potential.
 #include "mechanics/contact_problem.h"
 
 #include <doctest/doctest.h>
@@ -53,9 +53,9 @@ void fill(ReducedSpace& space, ElasticSolver& solver, const BondNetwork& network
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitX());
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitY());
     for (int k = 0; k < responses; ++k) {
-        ReducedSpace::Response response = space.response(solver, uneven_load(network, k));
+        ReducedSpace::Response response = space.response(solver, uneven_load(network, k), {}, 0.1);
         const double unit = max_displacement(response.displacement);
-        REQUIRE(space.add(solver, response, unit));
+        REQUIRE(space.add(response, unit));
     }
 }
 
@@ -67,7 +67,7 @@ Eigen::VectorXd uneven_freedoms(const ReducedSpace& space) {
 
 }  // namespace
 
-TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses share no energy, what is there is not added again") {
+TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses have the energy of the network, what is there is not added again") {
     const BondNetwork network = rough_body().network;
     ElasticSolver solver(network, Ground::displacement_and_rotation);
     ReducedSpace space(network);
@@ -76,22 +76,27 @@ TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses sh
     const Eigen::MatrixXd& stiffness = space.stiffness();
     CHECK(stiffness.topLeftCorner(4, 8).isZero(0.0));
     for (Eigen::Index a = 4; a < 8; ++a) {
-        for (Eigen::Index b = 4; b < a; ++b) {
-            CHECK(std::abs(stiffness(a, b)) < 1e-9 * std::sqrt(stiffness(a, a) * stiffness(b, b)));
+        const Vector force = space.force(solver, Eigen::VectorXd::Unit(8, a));
+        for (Eigen::Index b = 4; b < 8; ++b) {
+            const double energy = linalg::dot(space.displacement(Eigen::VectorXd::Unit(8, b)), force);
+            CHECK(std::abs(stiffness(a, b) - energy) < 1e-9 * std::sqrt(stiffness(a, a) * stiffness(b, b)));
         }
     }
     const Eigen::VectorXd freedoms = uneven_freedoms(space);
     CHECK(space.energy(freedoms) == relative(0.5 * linalg::dot(space.displacement(freedoms), space.force(solver, freedoms)), 1e-9));
     CHECK(space.energy(freedoms) == relative(energy_in_bonds(network, space.displacement(freedoms)), 1e-9));
-    // Forces that a displacement of the space holds have a response that is in the space.
-    const Vector known = space.force(solver, freedoms);
-    ReducedSpace::Response again{space.displacement(freedoms), 1.0, 0};
-    Vector nothing = again.displacement;
-    for (Vec6& each : nothing) each *= 1e-12;
-    again.displacement = nothing;
-    CHECK_FALSE(space.add(solver, again, 1.0));
-    CHECK_FALSE(space.add(solver, {known, 1.0, 0}, 0.0));
+    // A displacement of the space, next to nothing of another, and the unit of a displacement that moves no contact.
+    ReducedSpace::Response again{space.displacement(freedoms), space.force(solver, freedoms), 0};
+    CHECK_FALSE(space.add(again, 1e-11));
+    const ReducedSpace::Response other = space.response(solver, uneven_load(network, 5), {}, 0.1);
+    for (std::size_t node = 0; node < network.nodes(); ++node) {
+        again.displacement[node] += 1e-6 * other.displacement[node];
+        again.force[node] += 1e-6 * other.force[node];
+    }
+    CHECK_FALSE(space.add(again, 1e-11));
+    CHECK_FALSE(space.add(other, 0.0));
     CHECK(space.fields() == 7);
+    CHECK(space.add(other, 1e-11));
 }
 
 TEST_CASE("responses that become one field keep displacement, force and energy") {
@@ -169,6 +174,28 @@ TEST_CASE("contacts resist with the derivative of their potential, and stiffen w
             CHECK(std::abs((above.potential - below.potential) / (2.0 * step) - resistance[k]) < 1e-6 * resistance.norm());
             const Eigen::VectorXd slope = (contacts.resistance(above) - contacts.resistance(below)) / (2.0 * step);
             CHECK((slope - stiffness.col(k)).norm() < 1e-5 * stiffness.norm());
+        }
+        // Against motions of the nodes they are as stiff, less what the body gives way as a whole.
+        for (const bool punch_held : {false, true}) {
+            const linalg::Holding holding = contacts.holding(forces, freedoms, 3, punch_held);
+            const Eigen::Index first = punch_held ? 1 : 0, whole = 4 - first, fields = 3;
+            const Eigen::MatrixXd shared = stiffness.block(first, 4, whole, fields);
+            const Eigen::MatrixXd rest = stiffness.bottomRightCorner(fields, fields) -
+                                         shared.transpose() * stiffness.block(first, first, whole, whole).ldlt().solve(shared);
+            for (Eigen::Index a = 0; a < fields; ++a) {
+                const auto field = [&](Eigen::Index k) { return space.displacement(Eigen::VectorXd::Unit(freedoms.size(), k + 4)); };
+                const Vector motion = field(a);
+                const linalg::NodeForces held = holding([&](std::size_t node) { return motion[node]; });
+                for (Eigen::Index b = 0; b < fields; ++b) {
+                    const Vector other = field(b);
+                    double work = 0.0;
+                    for (const auto& [node, force] : held) work += other[node].dot(force);
+                    CHECK(std::abs(work - rest(a, b)) < 1e-9 * stiffness.bottomRightCorner(fields, fields).norm());
+                }
+            }
+            for (std::size_t field = 0; field < 3; ++field)
+                for (const auto& [node, force] : holding([&](std::size_t at) { return space.displacement(field, at); }))
+                    CHECK(force.norm() < 1e-9 * stiffness.norm());
         }
         // On the nodes the contacts do what they do to the freedoms.
         Vector nodes(network.nodes(), Vec6::Zero());
