@@ -51,7 +51,7 @@ Equilibria::Equilibria(const Specimen& specimen, const Fixture& fixture, const O
       tooling_(find_contacts(specimen, fixture)),
       solver_(specimen.body.network, mechanics::Ground::displacement_and_rotation, stop, options.linear_solver),
       problem_(specimen.body.network, solver_, tooling_.contacts, pairs_that_may_touch(specimen), options.friction,
-               seating_share * expected_force(specimen, fixture, options)),
+               seating_share * expected_force(specimen, fixture, options), options.tolerance),
       gauge_(specimen, fixture),
       tolerance_(options.tolerance) {}
 

@@ -47,9 +47,11 @@ Seat seat_rigid(const BondNetwork& network, const std::vector<WallContact>& wall
 }
 
 ContactProblem::ContactProblem(const BondNetwork& network, ElasticSolver& solver, const std::vector<WallContact>& walls,
-                               std::vector<PairContact> pairs, double friction, double seating_force)
+                               std::vector<PairContact> pairs, double friction, double seating_force,
+                               double finest_tolerance)
     : network_(network),
       solver_(solver),
+      exact_(finest_tolerance < rounding_residual),
       space_(network),
       contacts_(network, walls, std::move(pairs), friction),
       seated_(seat_in(space_, contacts_, seating_force)) {
@@ -108,7 +110,7 @@ bool ContactProblem::add_response(const Vector& unbalanced, const linalg::Holdin
     ReducedSpace::Response response = space_.response(solver_, unbalanced, holding, response_tolerance);
     iterations += response.iterations;
     const double unit = contacts_.max_approach(response.displacement);
-    if (!space_.add(response, unit)) return false;
+    if (!space_.add(response, unit, exact_ ? &solver_ : nullptr)) return false;
     contacts_.add_field(space_, space_.fields() - 1);
     freedoms_.conservativeResize(freedoms_.size() + 1);
     freedoms_[freedoms_.size() - 1] = 0.0;

@@ -43,10 +43,11 @@ Seat seat_rigid(const BondNetwork& network, const std::vector<WallContact>& wall
 class ContactProblem {
    public:
     /// pairs: all that may come to touch. friction: coefficient of all contacts. seating_force, N: the body lies under it as a
-    /// rigid one, without sliding along x or y; there contact begins as the force goes to zero. Network and solver must outlive
+    /// rigid one, without sliding along x or y; there contact begins as the force goes to zero. finest_tolerance: of all
+    /// equilibria that will be asked for. Network and solver must outlive
     /// the problem.
     ContactProblem(const BondNetwork& network, ElasticSolver& solver, const std::vector<WallContact>& walls,
-                   std::vector<PairContact> pairs, double friction, double seating_force);
+                   std::vector<PairContact> pairs, double friction, double seating_force, double finest_tolerance);
 
     /// m, travel of the punch to the body at its seat.
     double seat() const { return seated_[0]; }
@@ -79,6 +80,7 @@ class ContactProblem {
 
     const BondNetwork& network_;
     ElasticSolver& solver_;
+    bool exact_;  // forces of fields are those of the numbers kept, not those of the linear solver
     ReducedSpace space_;
     ContactSet contacts_;
     Eigen::VectorXd freedoms_;  // m, of the space

@@ -145,16 +145,27 @@ void ReducedSpace::remove_rigid_motions(Vector& displacement) const {
         worth_threads);
 }
 
-bool ReducedSpace::add(const Response& response, double unit) {
-    return unit > 0.0 && add_response(response.displacement, response.force, unit, min_novelty);
+bool ReducedSpace::add(const Response& response, double unit, const ElasticSolver* exact) {
+    return unit > 0.0 && add_response(response, unit, exact, min_novelty);
 }
 
-/// A displacement over a unit as a field, and the forces that hold it; false if next to nothing of its energy is new.
-bool ReducedSpace::add_response(const Vector& displacement, const Vector& force, double unit, double least) {
+/// least: part of its energy that has to be new.
+bool ReducedSpace::add_response(const Response& response, double unit, const ElasticSolver* exact, double least) {
+    const Vector& displacement = response.displacement;
     CompactField field(displacement.size());
     for_rows(displacement.size(), [&](std::size_t node) { field.set(node, displacement[node] / unit); }, worth_threads);
-    const double energy = linalg::dot(displacement, force) / unit / unit;
-    const Eigen::VectorXd shared = work(force) / unit;
+    double energy = 0.0;
+    Eigen::VectorXd shared;
+    if (exact) {
+        Vector kept(displacement.size()), force;
+        for_rows(kept.size(), [&](std::size_t node) { kept[node] = field[node]; }, worth_threads);
+        exact->forces(kept, force);
+        energy = linalg::dot(kept, force);
+        shared = work(force);
+    } else {
+        energy = linalg::dot(displacement, response.force) / unit / unit;
+        shared = work(response.force) / unit;
+    }
     const auto responses = static_cast<Eigen::Index>(responses_.size());
     const auto there = stiffness_.bottomRightCorner(responses, responses);
     const double novelty = responses > 0 ? energy - shared.dot(there.ldlt().solve(shared)) : energy;
@@ -174,9 +185,7 @@ void ReducedSpace::remove_last() {
 
 void ReducedSpace::replace_responses(const ElasticSolver& solver, const Vector& sum, double unit) {
     while (!responses_.empty()) remove_last();
-    Vector force;
-    solver.forces(sum, force);
-    add_response(sum, force, unit, -1.0);
+    add_response({sum, {}, 0}, unit, &solver, -1.0);
 }
 
 void ReducedSpace::soften(std::size_t bond, double share) {

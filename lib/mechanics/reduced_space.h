@@ -41,8 +41,9 @@ class ReducedSpace {
     };
     /// What the body does under forces on the nodes (N), to a tolerance. holding: of its contacts.
     Response response(ElasticSolver& solver, const Vector& load, const linalg::Holding& holding, double tolerance) const;
-    /// Takes a response as a field whose unit is so many of its own; false if there is next to nothing in it.
-    bool add(const Response& response, double unit);
+    /// Takes a response as a field whose unit is so many of its own; false if there is next to nothing new in it. exact: gives the
+    /// forces that hold the field as it is kept; otherwise those of the response count, which differ by rounding.
+    bool add(const Response& response, double unit, const ElasticSolver* exact = nullptr);
     void remove_last();
 
     /// What all responses add up to now.
@@ -63,7 +64,7 @@ class ReducedSpace {
     void add_scaled(double factor, const Eigen::VectorXd& amplitudes, Vector& displacement) const;
     Eigen::VectorXd amplitudes_of_responses(const Eigen::VectorXd& freedoms) const;
     void add_freedom();
-    bool add_response(const Vector& displacement, const Vector& force, double unit, double least);
+    bool add_response(const Response& response, double unit, const ElasticSolver* exact, double least);
     void remove_rigid_motions(Vector& displacement) const;
 
     const BondNetwork& network_;
