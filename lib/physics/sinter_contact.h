@@ -37,7 +37,7 @@ inline double normal_viscosity_factor(const ContactConstants& c, double reduced)
 
 /// The number, or zero for one below; Number: double or a vector of them.
 template <typename Number>
-inline Number positive(Number number) {
+inline Number positive(const Number& number) {
     const Number zero{};
     return number > zero ? number : zero;
 }
@@ -45,7 +45,7 @@ inline Number positive(Number number) {
 /// How the normal viscosity grows with the overlap: h^2, m2. With its integral and the inverse of that below, the only place
 /// where the power of h stands.
 template <typename Number>
-inline Number viscosity_shape(Number overlap) { return positive(overlap) * positive(overlap); }
+inline Number viscosity_shape(const Number& overlap) { return positive(overlap) * positive(overlap); }
 
 /// Integral of viscosity_shape from one overlap to another, m3; K/Delta times it is the force times the time in which that alone
 /// is overcome. Overlaps below zero count as zero.
