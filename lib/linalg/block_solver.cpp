@@ -39,16 +39,8 @@ auto fields_of(Values<double, all>& values, int first) {
 template <int width, int all>
 class Pass {
    public:
-    /// holding: only of one field; may be empty.
-    Pass(const Springs<double>& matrix, const Holding& holding, Multigrid& preconditioner, Batch<all>& x, int first, Batch<width>& r)
-        : matrix_(matrix),
-          holding_(holding),
-          preconditioner_(preconditioner),
-          x_(x),
-          first_(first),
-          r_(r),
-          q_(r.size()),
-          p_(r.size()) {}
+    Pass(const Springs<double>& matrix, Multigrid& preconditioner, Batch<all>& x, int first, Batch<width>& r)
+        : matrix_(matrix), preconditioner_(preconditioner), x_(x), first_(first), r_(r), q_(r.size()), p_(r.size()) {}
 
     /// left: norms of r; iterations are added to what each report has.
     void run(const PerField<width>& left, const PerField<width>& goal, int max_iterations, const StopRequest& stop,
@@ -106,7 +98,7 @@ class Pass {
 
     /// q = A p; gives p . q.
     PerField<width> multiply() {
-        PerField<width> curvature = sum_chunks(matrix_.chunks(), PerField<width>(PerField<width>::Zero()), [&](std::size_t chunk) {
+        return sum_chunks(matrix_.chunks(), PerField<width>(PerField<width>::Zero()), [&](std::size_t chunk) {
             PerField<width> sum = PerField<width>::Zero();
             matrix_.for_forces<width>(chunk, p_, [&](std::size_t node, const Freedoms<double, width>& force) {
                 q_[node] = values_of(force);
@@ -114,16 +106,6 @@ class Pass {
             });
             return sum;
         });
-        if constexpr (width == 1) {
-            const auto motion = [&](std::size_t node) -> Vec6 { return values_of(p_[node]); };
-            if (holding_) {
-                for (const auto& [node, force] : holding_(motion)) {
-                    q_[node] += force;
-                    curvature[0] += force.dot(motion(node));
-                }
-            }
-        }
-        return curvature;
     }
 
     /// x += step p, r -= step q; gives the norms of r.
@@ -170,7 +152,6 @@ class Pass {
     }
 
     const Springs<double>& matrix_;
-    const Holding& holding_;
     Multigrid& preconditioner_;
     Batch<all>& x_;
     int first_;
@@ -207,7 +188,7 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
         return any;
     };
     for (int pass = 0; pass <= max_restarts && unfinished(); ++pass) {
-        Pass<width, all>(matrix, {}, preconditioner, x, first, r).run(left, goal, max_iterations, stop, reports);
+        Pass<width, all>(matrix, preconditioner, x, first, r).run(left, goal, max_iterations, stop, reports);
         residual(matrix, fields, loads, r);
         left = norms<width>(r);
     }
@@ -219,13 +200,13 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
     return reports;
 }
 
-int solve_roughly(const Springs<double>& matrix, const Holding& holding, Multigrid& preconditioner, const Vector& b, Vector& x,
-                  Vector& r, double tolerance, int max_iterations, const StopRequest& stop) {
+int solve_roughly(const Springs<double>& matrix, Multigrid& preconditioner, const Vector& b, Vector& x, Vector& r, double tolerance,
+                  int max_iterations, const StopRequest& stop) {
     std::array<SolveReport, 1> reports;
     x.assign(b.size(), Vec6::Zero());
     r = b;
     const PerField<1> size = norms<1>(b), goal = tolerance * size;
-    if (size[0] > goal[0]) Pass<1, 1>(matrix, holding, preconditioner, x, 0, r).run(size, goal, max_iterations, stop, reports);
+    if (size[0] > goal[0]) Pass<1, 1>(matrix, preconditioner, x, 0, r).run(size, goal, max_iterations, stop, reports);
     return reports[0].iterations;
 }
 

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
-#include <utility>
-#include <vector>
 
 #include "core/stop.h"
 #include "linalg/multigrid.h"
@@ -28,14 +25,9 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
                                              Batch<all>& x, int first, double tolerance, int max_iterations,
                                              const StopRequest& stop = {});
 
-/// Forces on some nodes, N.
-using NodeForces = std::vector<std::pair<std::size_t, Vec6>>;
-/// What holds a few nodes beside the springs, by the motions of all nodes: linear and symmetric.
-using Holding = std::function<NodeForces(const std::function<Vec6(std::size_t)>& motion)>;
-
-/// x with (A + holding) x = b - r, where r is at most `tolerance` times b as the iteration has it: nothing is computed apart. Gives
-/// the number of iterations.
-int solve_roughly(const Springs<double>& matrix, const Holding& holding, Multigrid& preconditioner, const Vector& b, Vector& x,
-                  Vector& r, double tolerance, int max_iterations, const StopRequest& stop = {});
+/// x with A x = b - r, where r is at most `tolerance` times b as the iteration has it: nothing is computed apart. Gives the number
+/// of iterations.
+int solve_roughly(const Springs<double>& matrix, Multigrid& preconditioner, const Vector& b, Vector& x, Vector& r, double tolerance,
+                  int max_iterations, const StopRequest& stop = {});
 
 }  // namespace kiln::linalg

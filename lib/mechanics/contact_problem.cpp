@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t max_fields = 120;
 constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before their sum takes their place
-constexpr double response_tolerance = 0.1;        // of one linear solve; the next one takes up what it leaves
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
 constexpr double min_progress = 0.5;              // residual with a field over that without it, below that
 constexpr double min_force = 1e-9;                // of the measure of a load: contact forces below do not count as a measure
@@ -105,9 +104,9 @@ Vector ContactProblem::unbalanced(const ContactSet::Forces& forces) const {
     return rest;
 }
 
-/// Adds what the body in its contacts does under unbalanced forces to the space; false if the space has it.
-bool ContactProblem::add_response(const Vector& unbalanced, const linalg::Holding& holding, int& iterations) {
-    ReducedSpace::Response response = space_.response(solver_, unbalanced, holding, response_tolerance);
+/// Adds what the body does under unbalanced forces to the space; false if the space has it.
+bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
+    ReducedSpace::Response response = space_.response(solver_, unbalanced);
     iterations += response.iterations;
     const double unit = contacts_.max_approach(response.displacement);
     if (!space_.add(response, unit, exact_ ? &solver_ : nullptr)) return false;
@@ -142,10 +141,7 @@ Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
         state.converged = settled && state.residual <= tolerance;
         before = freedoms_;
         before_residual = state.residual;
-        const auto respond = [&] {
-            return add_response(rest, contacts_.holding(forces, freedoms_, space_.rigid_motions(), load.held), state.iterations);
-        };
-        if (!stuck && state.residual > tolerance && space_.fields() < max_fields && respond()) continue;
+        if (!stuck && state.residual > tolerance && space_.fields() < max_fields && add_response(rest, state.iterations)) continue;
         before.resize(0);
         state.displacement = space_.displacement(freedoms_);
         if (contacts_.add_closed_pairs(space_, state.displacement)) continue;
@@ -166,7 +162,6 @@ void ContactProblem::conclude(Equilibrium& state, const ContactSet::Forces& forc
     state.punch_compliance = tangent_stiffness(space_, contacts_, forces, freedoms_).ldlt().solve(unit)[0];
 }
 
-/// Keeps of all elastic fields only what they add up to now: contacts without friction need no more of the past.
 void ContactProblem::join_responses() {
     const Vector sum = space_.sum_of_responses(freedoms_);
     const double unit = contacts_.max_approach(sum);

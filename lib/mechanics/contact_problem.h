@@ -35,8 +35,7 @@ Seat seat_rigid(const BondNetwork& network, const std::vector<WallContact>& wall
 
 /// Finds equilibria under rising or falling punch forces. Total energy (bonds, Hertz contacts, punch) is convex. It is minimised
 /// over a growing space of displacement fields: first the body's rigid motions in the field of the contacts, then, one by one, the
-/// response of bonds and contacts (as stiff as they are there) to the forces that the last minimum left unbalanced: Newton's step, to a
-/// rough tolerance. The bonds' matrix is preconditioned once; a minimum in the
+/// elastic response to the forces that the last minimum left unbalanced. The bonds' matrix is preconditioned once; a minimum in the
 /// space is a small dense problem; the space serves all forces. Contacts between particles enter where their gap has closed.
 /// With friction each minimum is found for given limits of the tangential forces, which are then taken anew from the normal forces
 /// until they no longer change: all matrices stay symmetric.
@@ -64,6 +63,9 @@ class ContactProblem {
     /// The punch and with it all force is gone; loading begins anew.
     void release();
 
+    /// Keeps of all elastic fields only what they add up to now: contacts without friction need no more of the past.
+    void join_responses();
+
     double friction_loss() const { return contacts_.lost(freedoms_); }  // J, since the beginning
 
     /// Leaves this share of a bond's stiffness, which the network still has whole, to the body; its ends may press each other from
@@ -74,8 +76,7 @@ class ContactProblem {
     Equilibrium search(const PunchLoad& load, double tolerance);
     bool settle(const PunchLoad& load, double tolerance);
     Vector unbalanced(const ContactSet::Forces& forces) const;
-    bool add_response(const Vector& unbalanced, const linalg::Holding& holding, int& iterations);
-    void join_responses();
+    bool add_response(const Vector& unbalanced, int& iterations);
     void conclude(Equilibrium& state, const ContactSet::Forces& forces, const PunchLoad& load) const;
 
     const BondNetwork& network_;

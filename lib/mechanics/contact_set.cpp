@@ -1,13 +1,11 @@
 // contact_set.cpp: overlaps, slides and forces of contacts by the freedoms of a reduced space.
 #include "mechanics/contact_set.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "mechanics/contact_springs.h"
 #include "physics/hertz.h"
 
 namespace kiln::mechanics {
@@ -163,38 +161,6 @@ void ContactSet::add_stiffness(const Forces& forces, const Eigen::VectorXd& free
         const Eigen::Matrix<double, 3, Eigen::Dynamic> pull = gradient * rows;
         matrix += rows.transpose().lazyProduct(pull);
     }
-}
-
-linalg::Holding ContactSet::holding(const Forces& forces, const Eigen::VectorXd& freedoms, std::size_t rigid_motions,
-                                    bool punch_held) const {
-    ContactSprings springs;
-    const auto joined = [](const Vec3& along, const Vec3& about) {
-        Vec6 both;
-        both << along, about;
-        return both;
-    };
-    const Eigen::Index first = punch_held ? 1 : 0, count = static_cast<Eigen::Index>(rigid_motions) + 1 - first;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-        const Contact& contact = contacts_[c];
-        const auto row = static_cast<Eigen::Index>(c);
-        if (forces.stiffness[row] > 0.0)
-            springs.add({contact.node, contact.other, joined(-contact.push, Vec3::Zero()), joined(contact.push, Vec3::Zero()),
-                         forces.stiffness[row]},
-                        approach_.row(row).segment(first, count));
-        if (!tangential_.active()) continue;
-        const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = sliding_.middleRows<3>(3 * row);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(tangential_.potential(c, rows * freedoms).gradient);
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(axes.eigenvalues()[axis] > 0.0)) continue;
-            const Vec3 direction = axes.eigenvectors().col(axis);
-            const Vec3 along = direction - contact.push.dot(direction) * contact.push;
-            springs.add({contact.node, contact.other, joined(along, contact.arm.cross(along)),
-                         joined(-along, -contact.other_arm.cross(along)), axes.eigenvalues()[axis]},
-                        rows.middleCols(first, count).transpose() * direction);
-        }
-    }
-    springs.let_whole_follow();
-    return [springs = std::move(springs)](const std::function<Vec6(std::size_t)>& motion) { return springs.forces(motion); };
 }
 
 Vec3 ContactSet::on_node(const Forces& forces, std::size_t contact) const {

@@ -30,9 +30,6 @@ class ContactSet {
     Eigen::VectorXd resistance(const Forces& forces) const;
     /// Adds the derivative of the resistance by the freedoms, N/m.
     void add_stiffness(const Forces& forces, const Eigen::VectorXd& freedoms, Eigen::MatrixXd& matrix) const;
-    /// What the contacts do against motions of the nodes, in their stiffness here, where the body follows freely as a whole: in the
-    /// first freedoms of the space, so many rigid motions, and in that of the punch, unless it is held.
-    linalg::Holding holding(const Forces& forces, const Eigen::VectorXd& freedoms, std::size_t rigid_motions, bool punch_held) const;
     /// Adds the forces and moments on the nodes (moments over the rotation length).
     void add_to_nodes(const Forces& forces, Vector& nodes) const;
     /// N, on the particle of every wall contact.

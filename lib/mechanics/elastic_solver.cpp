@@ -66,21 +66,16 @@ std::array<linalg::SolveReport, 3> ElasticSolver::solve(const linalg::Batch<3>& 
     return linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_);
 }
 
-int ElasticSolver::respond(const Vector& load, const linalg::Holding& holding, Vector& displacement, Vector& force,
-                           double tolerance, int max_iterations) {
+int ElasticSolver::respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations) {
     if (other_) {
         const int iterations = solve(load, displacement, tolerance, max_iterations).iterations;
         forces(displacement, force);
         return iterations;
     }
-    Vector rest;
-    const int iterations = linalg::solve_roughly(matrix_, holding, *preconditioner_, load, displacement, rest, tolerance,
-                                                 max_iterations, stop_);
-    force = load;
-    linalg::add(-1.0, rest, force);
+    const int iterations =
+        linalg::solve_roughly(matrix_, *preconditioner_, load, displacement, force, tolerance, max_iterations, stop_);
+    for_rows(force.size(), [&](std::size_t node) { force[node] = load[node] - force[node]; }, worth_threads);  // what is not left
     force[grounded_] -= ground_.cwiseProduct(displacement[grounded_]);
-    if (!holding) return iterations;
-    for (const auto& [node, held] : holding([&](std::size_t at) { return displacement[at]; })) force[node] -= held;
     return iterations;
 }
 

@@ -34,11 +34,8 @@ class ElasticSolver {
     std::array<linalg::SolveReport, 3> solve(const linalg::Batch<3>& load, linalg::Batch<3>& x, double tolerance,
                                              int max_iterations = 1000);
 
-    /// Displacements under nearly a load, to a rough tolerance, and the forces that hold the network in them. holding: of contacts
-    /// that share the load; it has to let the body as a whole move freely. Another solver does without. Gives the number of
-    /// iterations.
-    int respond(const Vector& load, const linalg::Holding& holding, Vector& displacement, Vector& force, double tolerance,
-                int max_iterations = 1000);
+    /// Displacements under nearly a load, to a rough tolerance, and the forces that hold them. Gives the number of iterations.
+    int respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations = 1000);
 
     /// Forces that hold the network in a displacement field: the stiffness matrix without the ground, times the displacement.
     void forces(const Vector& displacement, Vector& force) const;

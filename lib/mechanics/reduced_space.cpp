@@ -9,6 +9,8 @@ namespace kiln::mechanics {
 
 namespace {
 
+constexpr double response_tolerance = 0.1;  // of one linear solve; the next one takes up what it leaves
+constexpr int max_iterations = 5;           // of one as well
 constexpr double min_novelty = 1e-10;       // of a response's energy: what the space does not have already
 constexpr std::size_t nodes_in_chunk = 256;
 
@@ -112,10 +114,9 @@ void ReducedSpace::add_rigid_motion(const Vec3& shift, const Vec3& turn) {
     add_freedom();
 }
 
-ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load, const linalg::Holding& holding,
-                                              double tolerance) const {
+ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load) const {
     Response response;
-    response.iterations = solver.respond(load, holding, response.displacement, response.force, tolerance);
+    response.iterations = solver.respond(load, response.displacement, response.force, response_tolerance, max_iterations);
     remove_rigid_motions(response.displacement);
     return response;
 }

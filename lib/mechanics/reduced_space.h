@@ -10,7 +10,7 @@
 namespace kiln::mechanics {
 
 /// Freedoms are the travel of a punch, which moves no node, and then the amplitudes of the fields, m. The first fields are rigid
-/// motions; the others are responses of the bonds to forces, nearly orthogonal in energy to each other and free of rigid motion.
+/// motions; the others are responses of the bonds to forces, free of rigid motion.
 /// What forces hold a field is not kept: a product with the bonds gives it back.
 class ReducedSpace {
    public:
@@ -39,8 +39,8 @@ class ReducedSpace {
         Vector force;         // N, that holds it
         int iterations = 0;   // of the linear solver
     };
-    /// What the body does under forces on the nodes (N), to a tolerance. holding: of its contacts.
-    Response response(ElasticSolver& solver, const Vector& load, const linalg::Holding& holding, double tolerance) const;
+    /// What the bonds do, nearly, under forces on the nodes (N).
+    Response response(ElasticSolver& solver, const Vector& load) const;
     /// Takes a response as a field whose unit is so many of its own; false if there is next to nothing new in it. exact: gives the
     /// forces that hold the field as it is kept; otherwise those of the response count, which differ by rounding.
     bool add(const Response& response, double unit, const ElasticSolver* exact = nullptr);
