@@ -11,6 +11,9 @@
 #include <iostream>
 #include <new>
 #include <set>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "core/parallel.h"
 #include "io/files.h"
@@ -175,6 +178,9 @@ void parse(CLI::App& app, int argc, char** argv, const Common& common) {
         throw Error("--config: " + app.get_config_ptr()->as<std::string>() + " cannot be read");
     }
     refuse_idle_processes(app);
+#ifdef __GLIBC__
+    mallopt(M_ARENA_MAX, 1);  // a heap for each thread takes an eighth more memory and saves no time
+#endif
     if (const int count = common.threads > 0 ? common.threads : threads_of_environment(); count > 0) set_threads(count);
 }
 
