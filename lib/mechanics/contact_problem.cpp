@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t max_fields = 120;
 constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before their sum takes their place
+constexpr int iterations_of_a_response = 5;       // what these leave, later responses find together, and sooner
+constexpr int many_iterations = 1000;             // where soft motions do not show in few: after breaks, or in a full space
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
 constexpr double min_progress = 0.5;              // residual with a field over that without it, below that
 constexpr double min_force = 1e-9;                // of the measure of a load: contact forces below do not count as a measure
@@ -106,7 +108,9 @@ Vector ContactProblem::unbalanced(const ContactSet::Forces& forces) const {
 
 /// Adds what the body does under unbalanced forces to the space; false if the space has it.
 bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
-    ReducedSpace::Response response = space_.response(solver_, unbalanced);
+    const bool patient = softened_ || space_.fields() > fields_of_a_sequence;
+    ReducedSpace::Response response =
+        space_.response(solver_, unbalanced, patient ? many_iterations : iterations_of_a_response);
     iterations += response.iterations;
     const double unit = contacts_.max_approach(response.displacement);
     if (!space_.add(response, unit, exact_ ? &solver_ : nullptr)) return false;
@@ -175,6 +179,7 @@ void ContactProblem::join_responses() {
 
 void ContactProblem::soften(std::size_t bond, double share, const PairContact& ends) {
     if (space_.fields() > fields_of_a_sequence) join_responses();
+    softened_ = true;
     space_.soften(bond, share);
     solver_.soften(network_, bond, share);
     contacts_.add_pair(ends);

@@ -82,6 +82,7 @@ class ContactProblem {
     const BondNetwork& network_;
     ElasticSolver& solver_;
     bool exact_;  // forces of fields are those of the numbers kept, not those of the linear solver
+    bool softened_ = false;  // some bond is, which the preconditioner does not know
     ReducedSpace space_;
     ContactSet contacts_;
     Eigen::VectorXd freedoms_;  // m, of the space

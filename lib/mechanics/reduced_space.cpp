@@ -10,7 +10,6 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr double response_tolerance = 0.1;  // of one linear solve; the next one takes up what it leaves
-constexpr int max_iterations = 5;           // of one as well
 constexpr double min_novelty = 1e-10;       // of a response's energy: what the space does not have already
 constexpr std::size_t nodes_in_chunk = 256;
 
@@ -114,7 +113,7 @@ void ReducedSpace::add_rigid_motion(const Vec3& shift, const Vec3& turn) {
     add_freedom();
 }
 
-ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load) const {
+ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vector& load, int max_iterations) const {
     Response response;
     response.iterations = solver.respond(load, response.displacement, response.force, response_tolerance, max_iterations);
     remove_rigid_motions(response.displacement);
@@ -130,14 +129,16 @@ void ReducedSpace::remove_rigid_motions(Vector& displacement) const {
     const Sums sums = sum_chunks(chunks_of(displacement.size()), zero, [&](std::size_t chunk) {
         Sums sum = zero;
         Eigen::Matrix<double, 6, most> motions = Eigen::Matrix<double, 6, most>::Zero();
-        for (std::size_t node = chunk * nodes_in_chunk; node < std::min(displacement.size(), (chunk + 1) * nodes_in_chunk); ++node) {
+        const std::size_t last = std::min(displacement.size(), (chunk + 1) * nodes_in_chunk);
+        for (std::size_t node = chunk * nodes_in_chunk; node < last; ++node) {
             for (Eigen::Index k = 0; k < count; ++k) motions.col(k) = this->displacement(rigid_[at(k)], node);
             sum.leftCols<most>() += motions.transpose() * motions;
             sum.rightCols<1>() += motions.transpose() * displacement[node];
         }
         return sum;
     });
-    const Eigen::VectorXd amplitude = sums.topLeftCorner(count, count).ldlt().solve(sums.topRightCorner(count, most + 1).rightCols<1>());
+    const Eigen::VectorXd work = sums.rightCols<1>().head(count);
+    const Eigen::VectorXd amplitude = sums.topLeftCorner(count, count).ldlt().solve(work);
     for_rows(
         displacement.size(),
         [&](std::size_t node) {

@@ -39,8 +39,8 @@ class ReducedSpace {
         Vector force;         // N, that holds it
         int iterations = 0;   // of the linear solver
     };
-    /// What the bonds do, nearly, under forces on the nodes (N).
-    Response response(ElasticSolver& solver, const Vector& load) const;
+    /// What the bonds do, nearly, under forces on the nodes (N), by so many iterations at most.
+    Response response(ElasticSolver& solver, const Vector& load, int max_iterations) const;
     /// Takes a response as a field whose unit is so many of its own; false if there is next to nothing new in it. exact: gives the
     /// forces that hold the field as it is kept; otherwise those of the response count, which differ by rounding.
     bool add(const Response& response, double unit, const ElasticSolver* exact = nullptr);

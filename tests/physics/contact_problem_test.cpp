@@ -1,4 +1,4 @@
-// contact_problem_test.cpp: the parts of the contact problem: a reduced space knows what holds its fields, contacts have a potential.
+// contact_problem_test.cpp: the parts of the contact problem: fields and what holds them, contacts and their potential.
 #include "mechanics/contact_problem.h"
 
 #include <doctest/doctest.h>
@@ -53,7 +53,7 @@ void fill(ReducedSpace& space, ElasticSolver& solver, const BondNetwork& network
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitX());
     space.add_rigid_motion(Vec3::Zero(), Vec3::UnitY());
     for (int k = 0; k < responses; ++k) {
-        ReducedSpace::Response response = space.response(solver, uneven_load(network, k));
+        ReducedSpace::Response response = space.response(solver, uneven_load(network, k), 10);
         const double unit = max_displacement(response.displacement);
         REQUIRE(space.add(response, unit));
     }
@@ -67,7 +67,7 @@ Eigen::VectorXd uneven_freedoms(const ReducedSpace& space) {
 
 }  // namespace
 
-TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses have the energy of the network, what is there is not added again") {
+TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses have their energy, none comes twice") {
     const BondNetwork network = rough_body().network;
     ElasticSolver solver(network, Ground::displacement_and_rotation);
     ReducedSpace space(network);
@@ -88,7 +88,7 @@ TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses ha
     // A displacement of the space, next to nothing of another, and the unit of a displacement that moves no contact.
     ReducedSpace::Response again{space.displacement(freedoms), space.force(solver, freedoms), 0};
     CHECK_FALSE(space.add(again, 1e-11));
-    const ReducedSpace::Response other = space.response(solver, uneven_load(network, 5));
+    const ReducedSpace::Response other = space.response(solver, uneven_load(network, 5), 10);
     for (std::size_t node = 0; node < network.nodes(); ++node) {
         again.displacement[node] += 1e-6 * other.displacement[node];
         again.force[node] += 1e-6 * other.force[node];
