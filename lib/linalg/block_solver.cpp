@@ -26,21 +26,15 @@ struct Products {
 template <int width>
 PerField<width> sums(const Values<double, width>& values) { return values.colwise().sum().array(); }
 
-/// Fields of a batch as one, for those who change them.
-template <int width, int all>
-auto fields_of(Values<double, all>& values, int first) {
-    return values.template middleCols<width>(first);
-}
-
 /// One pass of conjugate gradients over all fields that are not done. M in single precision is not the same in each iteration, to
 /// rounding; directions are made conjugate to the last one by r_(k+1) . z_(k+1) - r_k . z_(k+1) (Polak & Ribiere; Golub & Ye, SIAM
 /// J. Sci. Comput. 21 (1999) 1305), which equals the usual r_(k+1) . z_(k+1) for an exact M. Directions are kept in single
 /// precision too, in a unit of their own: x and r follow them as they are.
-template <int width, int all>
+template <int width>
 class Pass {
    public:
-    Pass(const Springs<double>& matrix, Multigrid& preconditioner, Batch<all>& x, int first, Batch<width>& r)
-        : matrix_(matrix), preconditioner_(preconditioner), x_(x), first_(first), r_(r), q_(r.size()), p_(r.size()) {}
+    Pass(const Springs<double>& matrix, Multigrid& preconditioner, Batch<width>& x, Batch<width>& r)
+        : matrix_(matrix), preconditioner_(preconditioner), x_(x), r_(r), q_(r.size()), p_(r.size()) {}
 
     /// left: norms of r; iterations are added to what each report has.
     void run(const PerField<width>& left, const PerField<width>& goal, int max_iterations, const StopRequest& stop,
@@ -114,7 +108,7 @@ class Pass {
         return sum_over_chunks<width>(x_.size(), [&](std::size_t first, std::size_t last) {
             PerField<width> sum = PerField<width>::Zero();
             for (std::size_t i = first; i < last; ++i) {
-                fields_of<width, all>(x_[i], first_) += values_of(p_[i]) * factors;
+                x_[i] += values_of(p_[i]) * factors;
                 r_[i] -= q_[i] * factors;
                 sum += r_[i].colwise().squaredNorm().array();
             }
@@ -153,33 +147,25 @@ class Pass {
 
     const Springs<double>& matrix_;
     Multigrid& preconditioner_;
-    Batch<all>& x_;
-    int first_;
-    Batch<width>&r_, q_;
+    Batch<width>&x_, &r_;
+    Batch<width> q_;
     Motions p_;
 };
 
 }  // namespace
 
-template <int width, int all>
-std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Multigrid& preconditioner, const Batch<all>& b,
-                                             Batch<all>& x, int first, double tolerance, int max_iterations,
-                                             const StopRequest& stop) {
+template <int width>
+std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Multigrid& preconditioner, const Batch<width>& b,
+                                             Batch<width>& x, double tolerance, int max_iterations, const StopRequest& stop) {
     std::array<SolveReport, width> reports;
-    const bool from_zero = x.empty();
-    if (from_zero) x.resize(b.size(), Values<double, all>::Zero());
-    const Columns<width, all> loads{b, first}, fields{x, first};
-    const PerField<width> size = sum_over_chunks<width>(b.size(), [&](std::size_t begin, std::size_t end) {
-        PerField<width> sum = PerField<width>::Zero();
-        for (std::size_t i = begin; i < end; ++i) sum += b[i].template middleCols<width>(first).colwise().squaredNorm().array();
-        return sum;
-    }).sqrt();
-    const PerField<width> goal = tolerance * size;
+    const PerField<width> size = norms<width>(b), goal = tolerance * size;
     Batch<width> r;
-    if constexpr (all == width) {
-        if (from_zero) r = b;
+    if (x.empty()) {
+        x.resize(b.size(), Values<double, width>::Zero());
+        r = b;
+    } else {
+        residual<width>(matrix, x, b, r);
     }
-    if (r.empty()) residual(matrix, fields, loads, r);
     PerField<width> left = norms<width>(r);
     const auto unfinished = [&] {
         bool any = false;
@@ -188,8 +174,8 @@ std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Mult
         return any;
     };
     for (int pass = 0; pass <= max_restarts && unfinished(); ++pass) {
-        Pass<width, all>(matrix, preconditioner, x, first, r).run(left, goal, max_iterations, stop, reports);
-        residual(matrix, fields, loads, r);
+        Pass<width>(matrix, preconditioner, x, r).run(left, goal, max_iterations, stop, reports);
+        residual<width>(matrix, x, b, r);
         left = norms<width>(r);
     }
     for (int field = 0; field < width; ++field) {
@@ -206,13 +192,13 @@ int solve_roughly(const Springs<double>& matrix, Multigrid& preconditioner, cons
     x.assign(b.size(), Vec6::Zero());
     r = b;
     const PerField<1> size = norms<1>(b), goal = tolerance * size;
-    if (size[0] > goal[0]) Pass<1, 1>(matrix, preconditioner, x, 0, r).run(size, goal, max_iterations, stop, reports);
+    if (size[0] > goal[0]) Pass<1>(matrix, preconditioner, x, r).run(size, goal, max_iterations, stop, reports);
     return reports[0].iterations;
 }
 
-template std::array<SolveReport, 1> solve_springs<1, 1>(const Springs<double>&, Multigrid&, const Batch<1>&, Batch<1>&, int, double,
-                                                        int, const StopRequest&);
-template std::array<SolveReport, 3> solve_springs<3, 3>(const Springs<double>&, Multigrid&, const Batch<3>&, Batch<3>&, int, double,
-                                                        int, const StopRequest&);
+template std::array<SolveReport, 1> solve_springs<1>(const Springs<double>&, Multigrid&, const Batch<1>&, Batch<1>&, double, int,
+                                                     const StopRequest&);
+template std::array<SolveReport, 3> solve_springs<3>(const Springs<double>&, Multigrid&, const Batch<3>&, Batch<3>&, double, int,
+                                                     const StopRequest&);
 
 }  // namespace kiln::linalg

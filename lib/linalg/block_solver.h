@@ -15,15 +15,14 @@ struct SolveReport {
     bool converged = false;
 };
 
-/// Improves `width` fields of x, from the column `first` on, until the norm of b - A x of each is at most `tolerance` times that of
-/// b, or max_iterations are done. What the iteration has lost by rounding is solved for again. An empty x is zero. Fields are
-/// independent of each other, but for the reading of A and M.
-/// A: symmetric positive semidefinite with b in its range. Widths: 1 of 1, 3 of 3.
+/// Improves the fields of x until the norm of b - A x of each is at most `tolerance` times that of b, or max_iterations are done.
+/// What the iteration has lost by rounding is solved for again. An empty x is zero. Fields are independent of each other, but for
+/// the reading of A and M.
+/// A: symmetric positive semidefinite with b in its range. Widths: 1 and 3.
 /// Throws Error where a number is not finite, Interrupted where a stop is requested.
-template <int width, int all>
-std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Multigrid& preconditioner, const Batch<all>& b,
-                                             Batch<all>& x, int first, double tolerance, int max_iterations,
-                                             const StopRequest& stop = {});
+template <int width>
+std::array<SolveReport, width> solve_springs(const Springs<double>& matrix, Multigrid& preconditioner, const Batch<width>& b,
+                                             Batch<width>& x, double tolerance, int max_iterations, const StopRequest& stop = {});
 
 /// x with A x = b - r, where r is at most `tolerance` times b as the iteration has it: nothing is computed apart. Gives the number
 /// of iterations.

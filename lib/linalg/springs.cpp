@@ -96,23 +96,23 @@ template Springs<double>::Springs(const Springs<double>&, double);
 void multiply(const Springs<double>& matrix, const Vector& x, Vector& y) {
     y.resize(matrix.nodes());
     for_chunks(matrix.chunks(), [&](std::size_t chunk) {
-        matrix.for_forces<1>(chunk, Columns<1, 1>{x},
+        matrix.for_forces<1>(chunk, x,
                              [&](std::size_t node, const Freedoms<double, 1>& force) { y[node] = values_of(force); });
     });
 }
 
-template <int width, int all>
-void residual(const Springs<double>& matrix, const Columns<width, all>& x, const Columns<width, all>& b, Batch<width>& r) {
+template <int width>
+void residual(const Springs<double>& matrix, const Batch<width>& x, const Batch<width>& b, Batch<width>& r) {
     r.resize(matrix.nodes());
     for_chunks(matrix.chunks(), [&](std::size_t chunk) {
         matrix.for_forces<width>(chunk, x, [&](std::size_t node, const Freedoms<double, width>& force) {
-            r[node] = b.batch[node].template middleCols<width>(b.first) - values_of(force);
+            r[node] = b[node] - values_of(force);
         });
     });
 }
 
-template void residual(const Springs<double>&, const Columns<1, 1>&, const Columns<1, 1>&, Batch<1>&);
-template void residual(const Springs<double>&, const Columns<3, 3>&, const Columns<3, 3>&, Batch<3>&);
+template void residual<1>(const Springs<double>&, const Batch<1>&, const Batch<1>&, Batch<1>&);
+template void residual<3>(const Springs<double>&, const Batch<3>&, const Batch<3>&, Batch<3>&);
 
 std::vector<Mat6> diagonal_blocks(const Springs<double>& matrix) {
     std::vector<Mat6> diagonal(matrix.nodes(), Mat6::Zero());

@@ -10,24 +10,15 @@
 
 namespace kiln::linalg {
 
+/// Asks for values before they are needed.
 template <typename Values>
 KILN_INLINE void expect(const Values& values) {
     for (std::size_t byte = 0; byte < sizeof values; byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(&values) + byte);
 }
 
-/// One or three fields among those of a batch: column `first` onwards.
-template <int width, int all>
-struct Columns {
-    const Batch<all>& batch;
-    int first = 0;
-};
-
-template <typename Real, int width, int all>
-KILN_INLINE Freedoms<Real, width> motion_at(const Columns<width, all>& columns, std::size_t node) {
-    if constexpr (all == 1)
-        return motion_of<Real, width>(columns.batch[node]);
-    else
-        return motion_of<Real, width>(columns.batch[node].template middleCols<width>(columns.first));
+template <typename Real, int width>
+KILN_INLINE Freedoms<Real, width> motion_at(const Batch<width>& motions, std::size_t node) {
+    return motion_of<Real, width>(motions[node]);
 }
 
 template <typename Real, int width>
@@ -45,17 +36,6 @@ KILN_INLINE Freedoms<Real, width> motion_at(const std::vector<Freedoms<float, wi
     const Narrow& from = reinterpret_cast<const Narrow&>(motions[node]);
     for (int k = 0; k < Freedoms<Real, width>::size / 4; ++k) to[k] = __builtin_convertvector(from[k], Four<Real>);
     return motion;
-}
-
-/// Asks for a node's motion before it is needed.
-template <int width, int all>
-KILN_INLINE void expect_motion(const Columns<width, all>& columns, std::size_t node) {
-    expect(columns.batch[node]);
-}
-
-template <typename Real, int width>
-KILN_INLINE void expect_motion(const std::vector<Freedoms<Real, width>>& motions, std::size_t node) {
-    expect(motions[node]);
 }
 
 /// Nodes are cut into chunks of fixed size. A spring inside a chunk is computed once for both of its nodes; one between two chunks
@@ -135,14 +115,14 @@ class Springs {
         const auto first = static_cast<std::uint32_t>(c.first_node), count = static_cast<std::uint32_t>(c.last_node) - first;
         for (std::size_t k = c.first_spring; k < c.last_spring; ++k) {
             const Spring<Real>& spring = springs_[k];
-            expect_motion(motions, at(springs_[std::min(k + springs_ahead, c.last_spring - 1)].second));
+            expect(motions[at(springs_[std::min(k + springs_ahead, c.last_spring - 1)].second)]);
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
             add_force<one_register>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[i - first],
                                    sums[std::min(j - first, count)]);
         }
         for (std::size_t k = c.first_incoming; k < c.last_incoming; ++k) {
             const Spring<Real>& spring = springs_[incoming_[k]];
-            expect_motion(motions, at(springs_[incoming_[std::min(k + springs_ahead, c.last_incoming - 1)]].first));
+            expect(motions[at(springs_[incoming_[std::min(k + springs_ahead, c.last_incoming - 1)]].first)]);
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
             add_force<one_register>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[count],
                                    sums[j - first]);
@@ -176,9 +156,9 @@ class Springs {
 /// y = A x.
 void multiply(const Springs<double>& matrix, const Vector& x, Vector& y);
 
-/// r = b - A x, of some fields of batches; r holds these alone.
-template <int width, int all>
-void residual(const Springs<double>& matrix, const Columns<width, all>& x, const Columns<width, all>& b, Batch<width>& r);
+/// r = b - A x, of one field or three.
+template <int width>
+void residual(const Springs<double>& matrix, const Batch<width>& x, const Batch<width>& b, Batch<width>& r);
 
 /// The blocks on the diagonal.
 std::vector<Mat6> diagonal_blocks(const Springs<double>& matrix);

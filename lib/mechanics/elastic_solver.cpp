@@ -51,19 +51,19 @@ ElasticSolver::ElasticSolver(const BondNetwork& network, Ground ground, StopRequ
 
 Residual ElasticSolver::residual() const {
     return [this](const Vector& x, const Vector& b, Vector& r) {
-        linalg::residual(matrix_, linalg::Columns<1, 1>{x}, linalg::Columns<1, 1>{b}, r);
+        linalg::residual<1>(matrix_, x, b, r);
     };
 }
 
 linalg::SolveReport ElasticSolver::solve(const Vector& load, Vector& x, double tolerance, int max_iterations) {
     if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
-    return linalg::solve_springs<1>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_)[0];
+    return linalg::solve_springs<1>(matrix_, *preconditioner_, load, x, tolerance, max_iterations, stop_)[0];
 }
 
 std::array<linalg::SolveReport, 3> ElasticSolver::solve(const linalg::Batch<3>& load, linalg::Batch<3>& x, double tolerance,
                                                         int max_iterations) {
     if (other_) return solve_with(*other_, residual(), load, x, tolerance, max_iterations);
-    return linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, 0, tolerance, max_iterations, stop_);
+    return linalg::solve_springs<3>(matrix_, *preconditioner_, load, x, tolerance, max_iterations, stop_);
 }
 
 int ElasticSolver::respond(const Vector& load, Vector& displacement, Vector& force, double tolerance, int max_iterations) {

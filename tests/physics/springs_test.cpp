@@ -64,7 +64,7 @@ TEST_CASE("products with springs are those with the assembled matrix, for one fi
         Vector difference = y;
         add(-1.0, expected, difference);
         CHECK(norm(difference) <= 1e-14 * norm(expected));
-        residual(springs, Columns<3, 3>{three}, Columns<3, 3>{load}, rest);
+        residual<3>(springs, three, load, rest);
         for (int field = 0; field < 3; ++field) {
             for (std::size_t node = 0; node < network.nodes(); ++node) x[node] = three[node].col(field);
             multiply(springs, x, expected);
