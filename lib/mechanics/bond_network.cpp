@@ -220,7 +220,7 @@ std::vector<linalg::Spring<double>> springs_of(const BondNetwork& network) {
     return springs;
 }
 
-std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement, const Mat3& strain) {
+std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement) {
     std::vector<BondLoad> loads(network.bonds());
     for_rows(network.bonds(), [&](std::size_t bond) {
         const Vec6& first = displacement[at(network.pair[bond][0])];
@@ -228,7 +228,7 @@ std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displ
         const Vec3& d = network.vector[bond];
         const double length = network.rotation_length;
         const Vec3 twist = (first.tail<3>() + second.tail<3>()) / (2.0 * length);
-        const Vec3 opening = second.head<3>() - first.head<3>() + d.cross(twist) + strain * d;
+        const Vec3 opening = second.head<3>() - first.head<3>() + d.cross(twist);
         const Vec3 turning = (second.tail<3>() - first.tail<3>()) / length;
         const BondTensor k = tensor_of(network, bond);
         loads[bond].force = k.displacement * opening;
@@ -243,25 +243,6 @@ physics::BondStress stress_of(const BondNetwork& network, std::size_t bond, cons
     const double torsion = load.moment.dot(along);
     return physics::bond_stress(load.tension, (load.force - load.tension * along).norm(), (load.moment - torsion * along).norm(),
                                 std::abs(torsion), network.radius[bond]);
-}
-
-Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads) {
-    const Grouping<std::int32_t> incidence = find_incidence(network.nodes(), network.pair);
-    Vector forces(network.nodes(), Vec6::Zero());
-    for_rows(network.nodes(), [&](std::size_t node) {
-        for (const std::int32_t row : incidence.of(node)) {
-            const auto bond = at(row);
-            const BondLoad& load = loads[bond];
-            const Vec3 moment = 0.5 * network.vector[bond].cross(load.force);
-            for (const int end : {0, 1}) {
-                if (at(network.pair[bond][at(end)]) != node) continue;
-                const double sign = end == 0 ? 1.0 : -1.0;
-                forces[node].head<3>() += sign * load.force;
-                forces[node].tail<3>() += (moment + sign * load.moment) / network.rotation_length;
-            }
-        }
-    }, worth_threads);
-    return forces;
 }
 
 }  // namespace kiln::mechanics

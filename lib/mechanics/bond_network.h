@@ -93,15 +93,10 @@ struct BondLoad {
     double tension;  // N, along the bond, positive when it pulls
 };
 
-/// Loads of all bonds under a displacement field and a uniform strain of the whole (symmetric 3x3; zero for a free network).
-std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement,
-                                 const Eigen::Matrix3d& strain = Eigen::Matrix3d::Zero());
+/// Loads of all bonds under a displacement field.
+std::vector<BondLoad> bond_loads(const BondNetwork& network, const Vector& displacement);
 
 /// Greatest stresses in a bond of the network under its load.
 physics::BondStress stress_of(const BondNetwork& network, std::size_t bond, const BondLoad& load);
-
-/// Sum over the bonds at each node of what they do to it: minus the stiffness matrix times the displacement, when the strain is
-/// zero.
-Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads);
 
 }  // namespace kiln::mechanics

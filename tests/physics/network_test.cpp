@@ -50,6 +50,22 @@ double stored_energy(const BondNetwork& network, const Vector& displacement) {
     return dot(displacement, force) / 2.0;
 }
 
+/// Sum over the bonds at each node of what they do to it.
+Vector nodal_forces(const BondNetwork& network, const std::vector<BondLoad>& loads) {
+    Vector forces(network.nodes(), Vec6::Zero());
+    for (std::size_t bond = 0; bond < loads.size(); ++bond) {
+        const BondLoad& load = loads[bond];
+        const Vec3 moment = 0.5 * network.vector[bond].cross(load.force);
+        for (const std::size_t end : {0u, 1u}) {
+            const double sign = end == 0 ? 1.0 : -1.0;
+            Vec6& on_node = forces[static_cast<std::size_t>(network.pair[bond][end])];
+            on_node.head<3>() += sign * load.force;
+            on_node.tail<3>() += (moment + sign * load.moment) / network.rotation_length;
+        }
+    }
+    return forces;
+}
+
 }  // namespace
 
 TEST_CASE("a cantilever of bonds bends by L3/(3 E I)(1 - l2/(4 L2)) + L/(G A), stretches by L/(E A), twists by L/(G J)") {
