@@ -130,8 +130,8 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
     });
     const std::size_t pieces = list.size() < worth_threads ? 1 : max_pieces;
     const auto begin_of = [&](std::size_t piece) { return list.size() * piece / pieces; };
-    /// Sets `rows` to the pairs of those kinds in their order; also(place, row) is called for each.
-    const auto collect = [&](std::vector<Pair>& rows, const auto& is_of, const auto& resized, const auto& also) {
+    /// Sets `values` to value(row) of the pairs of those kinds, in their order.
+    const auto collect = [&](auto& values, const auto& is_of, const auto& value) {
         std::vector<std::size_t> place(pieces + 1, 0);
         for_chunks(pieces, [&](std::size_t piece) {
             place[piece + 1] = static_cast<std::size_t>(
@@ -139,24 +139,21 @@ void Candidates::choose(const Motion& guess, const Motion& other, const std::vec
                               kind.begin() + static_cast<std::ptrdiff_t>(begin_of(piece + 1)), is_of));
         });
         std::partial_sum(place.begin(), place.end(), place.begin());
-        rows.resize(place.back());
-        resized(place.back());
+        values.resize(place.back());
         for_chunks(pieces, [&](std::size_t piece) {
             std::size_t at = place[piece];
-            for (std::size_t row = begin_of(piece); row < begin_of(piece + 1); ++row) {
-                if (!is_of(kind[row])) continue;
-                also(at, row);
-                rows[at++] = list[row];
-            }
+            for (std::size_t row = begin_of(piece); row < begin_of(piece + 1); ++row)
+                if (is_of(kind[row])) values[at++] = value(row);
         });
     };
-    const auto nothing = [](auto...) {};
-    collect(pairs_, [](std::uint8_t of) { return of == 1 || of == 2; }, nothing, nothing);
-    collect(chosen_, [](std::uint8_t of) { return of != 0; }, nothing, nothing);
-    collect(touching_, [](std::uint8_t of) { return of >= 2; }, nothing, nothing);
-    collect(sticking_, [](std::uint8_t of) { return of == 3; }, nothing, nothing);
-    collect(left_out_, [](std::uint8_t of) { return of == 0; }, [&](std::size_t size) { left_out_overlap_.resize(size); },
-            [&](std::size_t at, std::size_t row) { left_out_overlap_[at] = overlap[row]; });
+    const auto pair_of = [&](std::size_t row) { return list[row]; };
+    const auto left_out = [](std::uint8_t of) { return of == 0; };
+    collect(pairs_, [](std::uint8_t of) { return of == 1 || of == 2; }, pair_of);
+    collect(chosen_, [](std::uint8_t of) { return of != 0; }, pair_of);
+    collect(touching_, [](std::uint8_t of) { return of >= 2; }, pair_of);
+    collect(sticking_, [](std::uint8_t of) { return of == 3; }, pair_of);
+    collect(left_out_, left_out, pair_of);
+    collect(left_out_overlap_, left_out, [&](std::size_t row) { return overlap[row]; });
     steps_.resize(pairs_.size());
     for_rows(pairs_.size(), [&](std::size_t row) { steps_[row] = pair_step(pairs_[row], diffusion, unit_); });
 }
