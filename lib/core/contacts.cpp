@@ -67,10 +67,10 @@ void PeriodicClusters::join(const Pair& pair) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int around = to_i[axis] + pair.image[axis] - to_j[axis];  // of j's root seen from i's
         if (i == j) {
-            if (around != 0) percolating_[axis] = true;
-        }
-        else
+            if (around != 0) percolating_[axis] = true;  // written by several threads, if at all
+        } else {
             offset_[static_cast<std::size_t>(j)][axis] = around;
+        }
     }
     parent_[static_cast<std::size_t>(j)] = i;
 }

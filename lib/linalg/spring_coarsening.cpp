@@ -159,7 +159,7 @@ class Coarsening {
     void for_ends_at(std::size_t node, const Visit& visit) const {
         for (const std::uint32_t k : springs_at_.of(node)) {
             const Spring<double>& spring = springs_.springs()[k];
-            const Vec3 arm(spring.arm[0], spring.arm[1], spring.arm[2]);
+            const Eigen::Map<const Vec3> arm(spring.arm);
             if (at(spring.first) == node) visit(End{spring.second, arm, spring});
             if (at(spring.second) == node) visit(End{spring.first, -arm, spring});
         }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t max_fields = 120;
 constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before their sum takes their place
 constexpr int iterations_of_a_response = 5;       // what these leave, later responses find together, and sooner
-constexpr int many_iterations = 1000;             // where soft motions do not show in few: after breaks, or in a full space
+constexpr int many_iterations = 1000;             // where soft motions do not show in few: after breaks, or as the space fills
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
 constexpr double min_progress = 0.5;              // residual with a field over that without it, below that
 constexpr double min_force = 1e-9;                // of the measure of a load: contact forces below do not count as a measure
@@ -48,8 +48,7 @@ Seat seat_rigid(const BondNetwork& network, const std::vector<WallContact>& wall
 }
 
 ContactProblem::ContactProblem(const BondNetwork& network, ElasticSolver& solver, const std::vector<WallContact>& walls,
-                               std::vector<PairContact> pairs, double friction, double seating_force,
-                               double finest_tolerance)
+                               std::vector<PairContact> pairs, double friction, double seating_force, double finest_tolerance)
     : network_(network),
       solver_(solver),
       exact_(finest_tolerance < rounding_residual),
@@ -108,7 +107,7 @@ Vector ContactProblem::unbalanced(const ContactSet::Forces& forces) const {
 
 /// Adds what the body does under unbalanced forces to the space; false if the space has it.
 bool ContactProblem::add_response(const Vector& unbalanced, int& iterations) {
-    const bool patient = softened_ || space_.fields() > fields_of_a_sequence;
+    const bool patient = softened_ || space_.fields() > max_fields / 2;
     ReducedSpace::Response response =
         space_.response(solver_, unbalanced, patient ? many_iterations : iterations_of_a_response);
     iterations += response.iterations;

@@ -43,8 +43,7 @@ class ContactProblem {
    public:
     /// pairs: all that may come to touch. friction: coefficient of all contacts. seating_force, N: the body lies under it as a
     /// rigid one, without sliding along x or y; there contact begins as the force goes to zero. finest_tolerance: of all
-    /// equilibria that will be asked for. Network and solver must outlive
-    /// the problem.
+    /// equilibria that will be asked for. Network and solver must outlive the problem.
     ContactProblem(const BondNetwork& network, ElasticSolver& solver, const std::vector<WallContact>& walls,
                    std::vector<PairContact> pairs, double friction, double seating_force, double finest_tolerance);
 
@@ -81,7 +80,7 @@ class ContactProblem {
 
     const BondNetwork& network_;
     ElasticSolver& solver_;
-    bool exact_;  // forces of fields are those of the numbers kept, not those of the linear solver
+    bool exact_;             // forces of fields are those of the numbers kept, not those of the linear solver
     bool softened_ = false;  // some bond is, which the preconditioner does not know
     ReducedSpace space_;
     ContactSet contacts_;

@@ -23,12 +23,10 @@ Mat3 unit_strain(int component) {
     return strain;
 }
 
-/// Three strains at once, and of each a column.
+/// Three at once; what each does is a column.
 using Strains = std::array<Mat3, 3>;
 
 using Spring = linalg::Spring<double>;
-
-Vec3 arm_of(const Spring& spring) { return Vec3(spring.arm[0], spring.arm[1], spring.arm[2]); }
 
 /// Elongations of a spring where its ends follow the strains, over twice the rotation length.
 Mat3 affine_stretch(const Vec3& arm, const Strains& strains) {
@@ -54,7 +52,7 @@ linalg::Batch<3> strain_loads(const linalg::Springs<double>& springs, const Stra
             load[node].bottomRows<3>() += moment;
         };
         springs.for_springs(chunk, [&](const Spring& spring) {
-            const Vec3 arm = arm_of(spring);
+            const Eigen::Map<const Vec3> arm(spring.arm);
             const Mat3 force = force_of(spring, arm, 2.0 * rotation_length * affine_stretch(arm, strains));
             Mat3 moment;
             for (int k = 0; k < 3; ++k) moment.col(k) = arm.cross(force.col(k));
@@ -94,7 +92,7 @@ Stresses stresses(const linalg::Springs<double>& springs, const Strains& strains
         Stresses part;
         for (std::size_t k = chunk * in_chunk; k < std::min(all.size(), (chunk + 1) * in_chunk); ++k) {
             const Spring& spring = all[k];
-            const Vec3 arm = arm_of(spring);
+            const Eigen::Map<const Vec3> arm(spring.arm);
             const linalg::Values<double, 3>& first = motion[static_cast<std::size_t>(spring.first)];
             const linalg::Values<double, 3>& second = motion[static_cast<std::size_t>(spring.second)];
             const Mat3 affine = 2.0 * rotation_length * affine_stretch(arm, strains);
