@@ -2,7 +2,6 @@
 #include "io/files.h"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -40,11 +39,6 @@ void finish_partial(const std::string& name) {
     const std::string final = resolved(name), partial = final + ".partial";
     if (std::rename(partial.c_str(), final.c_str()) != 0 && errno != ENOENT)
         throw_system_error(name + ": cannot be renamed into place");
-}
-
-void keep_freed_memory() {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // bytes; the largest that glibc takes
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
 Input::Input(std::vector<std::string> files, StopRequest stop) : files_(std::move(files)), stop_(std::move(stop)) {

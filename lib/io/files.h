@@ -20,10 +20,6 @@ struct ClosedPipe : std::exception {};
 /// PlacedError "<sentence>: <cause>"; the sentence begins with the name of the file.
 [[noreturn]] void throw_system_error(const std::string& sentence);
 
-/// Lets the program keep the memory that it frees. A page that comes fresh from the system costs more time than reading 4 KB into
-/// it, and states come one after the other.
-void keep_freed_memory();
-
 /// The documents of several files, one after the other; no file, or "-", is stdin.
 class Input {
    public:

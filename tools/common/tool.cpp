@@ -11,13 +11,11 @@
 #include <iostream>
 #include <new>
 #include <set>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include "core/parallel.h"
 #include "io/files.h"
 #include "tools/common/help_format.h"
+#include "tools/common/memory.h"
 #include "tools/common/ranks.h"
 #include "tools/common/value_options.h"
 
@@ -140,7 +138,7 @@ void Common::add_to(CLI::App& app, bool reads, bool writes_states) {
 
 int run(const std::string& tool, int argc, char** argv, const std::function<int(int, char**)>& body) {
     watch_signals();
-    io::keep_freed_memory();
+    set_up_memory();
     const Ending ending = ending_of(tool, argc, argv, body);
     const bool together = !ending.failed || ranks::all_failed();
     if (!ending.sentence.empty() && (ranks::rank() == 0 || !together)) {
@@ -178,9 +176,6 @@ void parse(CLI::App& app, int argc, char** argv, const Common& common) {
         throw Error("--config: " + app.get_config_ptr()->as<std::string>() + " cannot be read");
     }
     refuse_idle_processes(app);
-#ifdef __GLIBC__
-    mallopt(M_ARENA_MAX, 1);  // a heap for each thread takes an eighth more memory and saves no time
-#endif
     if (const int count = common.threads > 0 ? common.threads : threads_of_environment(); count > 0) set_threads(count);
 }
 
