@@ -24,6 +24,7 @@ struct Smoothing {
 };
 constexpr Smoothing finest_smoothing{3, 0.1}, coarse_smoothing{2, 0.2};
 constexpr int power_steps = 10;
+constexpr double same_image = 1e-6;   // of a spring's length, by which its ends miss it: rounding, or else the period
 constexpr double power_margin = 1.1;  // the power iteration ends below the largest eigenvalue
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }
@@ -137,6 +138,13 @@ std::vector<Vec3> roots_of(const Aggregates& aggregates, const NodeGeometry& geo
     return roots;
 }
 
+/// Whether a spring lies in one aggregate, all of it in the same image of a periodic body: rigid motions do not strain it.
+bool moves_rigidly(const Spring<double>& spring, const Aggregates& aggregates, const std::vector<Vec3>& arms) {
+    const std::size_t i = at(spring.first), j = at(spring.second);
+    const Vec3 along = 2.0 * Eigen::Map<const Vec3>(spring.arm);
+    return aggregates.of[i] == aggregates.of[j] && (arms[i] + along - arms[j]).norm() < same_image * along.norm();
+}
+
 /// A step of the Chebyshev iteration: d <- memory d + gain D^-1 (b - A x), x <- x + d.
 struct ChebyshevStep {
     double memory, gain;
@@ -221,7 +229,9 @@ BlockMatrix BasicMultigrid<Real>::build_finest(const Springs<double>& matrix, No
     const std::vector<Vec3> arms = arms_of(aggregates, geometry);
     BlockMatrix coarser = coarse_matrix(matrix, inverse, prolongation_damping / max_eigenvalue, aggregates, arms);
     finest_.inverse_diagonal = rounded<Real>(inverse, 1.0 / scale_);
-    finest_.springs = Springs<Real>(matrix, scale_);
+    finest_.springs = Springs<Real>(matrix, scale_, [&](const Spring<double>& spring) {
+        return moves_rigidly(spring, aggregates, arms);
+    });
     for (const Vec3& arm : arms)
         finest_.arm.push_back({static_cast<Real>(arm[0]), static_cast<Real>(arm[1]), static_cast<Real>(arm[2])});
     finest_.members = group_by<std::int32_t>(aggregates.root.size(), [&](const auto& visit) {
@@ -281,7 +291,7 @@ void BasicMultigrid<Real>::step(const std::vector<Freedoms<Real, width>>& load, 
 }
 
 /// What the prolongation P = (I - omega D^-1 A) R does is done by the springs. R^T (I - omega A D^-1) (b - A x) is R^T (b - A y)
-/// with y = x + omega D^-1 (b - A x).
+/// with y = x + omega D^-1 (b - A x). Springs that move with an aggregate have no part in A R, nor in R^T A.
 template <typename Real>
 template <int width>
 void BasicMultigrid<Real>::cycle(AllFields<width>& fields) {
@@ -308,7 +318,7 @@ void BasicMultigrid<Real>::cycle(AllFields<width>& fields) {
     smooth_on();
     step(loads, solution, turns, 0.0, damping);
     for_chunks(springs.chunks(), [&](std::size_t chunk) {
-        springs.template for_forces<width>(
+        springs.template for_forces<width, Which::active>(
             chunk, turns, [&](std::size_t node, const Node& force) { left[node] = loads[node] - force; });
     });
     auto& coarser = fields.coarser.front();
@@ -336,7 +346,7 @@ void BasicMultigrid<Real>::cycle(AllFields<width>& fields) {
         worth_threads);
     const Real weight = static_cast<Real>(damping);
     for_chunks(springs.chunks(), [&](std::size_t chunk) {
-        springs.template for_forces<width>(chunk, rigid, [&](std::size_t node, const Node& force) {
+        springs.template for_forces<width, Which::active>(chunk, rigid, [&](std::size_t node, const Node& force) {
             solution[node] = solution[node] + (rigid[node] - weight * (finest_.inverse_diagonal[node] * force));
         });
     });

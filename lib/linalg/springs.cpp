@@ -22,6 +22,18 @@ Spring<Real> ascending(const Spring<Real>& spring) {
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
+/// Moves the idle ones to the end of a run, otherwise in the same order.
+template <typename Run, typename From, typename Idle, typename Move>
+Run split(const From& run, const Idle& idle, const Move& move) {
+    std::size_t to = run.first;
+    for (std::size_t k = run.first; k < run.last; ++k)
+        if (!idle(k)) move(k, to++);
+    const std::size_t middle = to;
+    for (std::size_t k = run.first; k < run.last; ++k)
+        if (idle(k)) move(k, to++);
+    return {run.first, middle, run.last};
+}
+
 }  // namespace
 
 SpringBlocks blocks_of(const Spring<double>& spring) {
@@ -59,24 +71,30 @@ Springs<Real>::Springs(std::size_t nodes, const std::vector<Spring<Real>>& sprin
     });
     for (std::size_t chunk = 0; chunk < count; ++chunk) {
         const std::size_t first = chunk * nodes_in_chunk, last = std::min(nodes, first + nodes_in_chunk);
-        chunks_.push_back(
-            {first, last, by_first.begin[first], by_first.begin[last], incoming.begin[chunk], incoming.begin[chunk + 1]});
+        const std::size_t own = by_first.begin[last], others = incoming.begin[chunk + 1];
+        chunks_.push_back({first, last, {by_first.begin[first], own, own}, {incoming.begin[chunk], others, others}});
     }
     incoming_ = std::move(incoming.items);
 }
 
 template <typename Real>
-template <typename Other>
-Springs<Real>::Springs(const Springs<Other>& other, double factor)
-    : nodes_(other.nodes_), springs_(other.springs_.size()), incoming_(other.incoming_), held_(other.held_) {
-    for (const auto& c : other.chunks_)
-        chunks_.push_back({c.first_node, c.last_node, c.first_spring, c.last_spring, c.first_incoming, c.last_incoming});
+Springs<Real>::Springs(const Springs<double>& other, double factor, const std::function<bool(const Spring<double>&)>& idle)
+    : nodes_(other.nodes_), springs_(other.springs_.size()), incoming_(other.incoming_.size()), held_(other.held_) {
+    std::vector<std::uint32_t> place(springs_.size());
+    for (const auto& c : other.chunks_) {
+        Chunk& here = chunks_.emplace_back(Chunk{c.first_node, c.last_node, {}, {}});
+        here.own = split<Run>(c.own, [&](std::size_t k) { return idle(other.springs_[k]); },
+                         [&](std::size_t from, std::size_t to) { place[from] = static_cast<std::uint32_t>(to); });
+        here.incoming = split<Run>(c.incoming, [&](std::size_t k) { return idle(other.springs_[other.incoming_[k]]); },
+                              [&](std::size_t from, std::size_t to) { incoming_[to] = other.incoming_[from]; });
+    }
+    for_rows(incoming_.size(), [&](std::size_t k) { incoming_[k] = place[incoming_[k]]; }, worth_threads);
     for_rows(springs_.size(), [&](std::size_t k) {
-        const Spring<Other>& from = other.springs_[k];
+        const Spring<double>& from = other.springs_[k];
         const auto arm = [&](int axis) { return static_cast<Real>(from.arm[axis]); };
-        const auto scaled = [&](Other stiffness) { return static_cast<Real>(factor * static_cast<double>(stiffness)); };
-        springs_[k] = {from.first,          from.second,        {arm(0), arm(1), arm(2)},
-                       scaled(from.shear), scaled(from.axial), scaled(from.bending), scaled(from.twisting)};
+        const auto scaled = [&](double stiffness) { return static_cast<Real>(factor * stiffness); };
+        springs_[place[k]] = {from.first,          from.second,        {arm(0), arm(1), arm(2)},
+                              scaled(from.shear), scaled(from.axial), scaled(from.bending), scaled(from.twisting)};
     });
     for (auto& [node, stiffness] : held_) stiffness *= factor;
 }
@@ -90,13 +108,13 @@ void Springs<Real>::soften(std::size_t row, double share) {
 
 template class Springs<float>;
 template class Springs<double>;
-template Springs<float>::Springs(const Springs<double>&, double);
-template Springs<double>::Springs(const Springs<double>&, double);
 
 void multiply(const Springs<double>& matrix, const Vector& x, Vector& y) {
     y.resize(matrix.nodes());
+    std::vector<Freedoms<double, 1>> motions(x.size());  // as registers take them
+    for_rows(x.size(), [&](std::size_t node) { motions[node] = motion_of<double, 1>(x[node]); }, worth_threads);
     for_chunks(matrix.chunks(), [&](std::size_t chunk) {
-        matrix.for_forces<1>(chunk, x,
+        matrix.for_forces<1>(chunk, motions,
                              [&](std::size_t node, const Freedoms<double, 1>& force) { y[node] = values_of(force); });
     });
 }

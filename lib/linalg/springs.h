@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,9 @@ KILN_INLINE Freedoms<Real, width> motion_at(const std::vector<Freedoms<float, wi
     return motion;
 }
 
+/// Springs that a product counts: all, or without those that do nothing in certain motions.
+enum class Which { all, active };
+
 /// Nodes are cut into chunks of fixed size. A spring inside a chunk is computed once for both of its nodes; one between two chunks
 /// once in each, which adds what it does to its own node. So chunks are independent, and sums do not depend on the number of
 /// threads. All widths of the processor's registers sum in the same order.
@@ -48,9 +52,8 @@ class Springs {
 
     Springs() = default;
     Springs(std::size_t nodes, const std::vector<Spring<Real>>& springs);
-    /// The same with all stiffnesses times a factor.
-    template <typename Other>
-    Springs(const Springs<Other>& other, double factor);
+    /// The same with all stiffnesses times a factor. idle: whether a spring does nothing in the motions of Which::active.
+    Springs(const Springs<double>& other, double factor, const std::function<bool(const Spring<double>&)>& idle);
 
     std::size_t nodes() const { return nodes_; }
     std::size_t chunks() const { return chunks_.size(); }
@@ -72,23 +75,23 @@ class Springs {
     template <typename Visit>
     void for_springs(std::size_t chunk, const Visit& visit) const {
         const Chunk& c = chunks_[chunk];
-        for (std::size_t k = c.first_spring; k < c.last_spring; ++k) visit(springs_[k]);
-        for (std::size_t k = c.first_incoming; k < c.last_incoming; ++k) visit(springs_[incoming_[k]]);
+        for (std::size_t k = c.own.first; k < c.own.last; ++k) visit(springs_[k]);
+        for (std::size_t k = c.incoming.first; k < c.incoming.last; ++k) visit(springs_[incoming_[k]]);
     }
 
     /// Calls visit(node, force) for each node of a chunk, with the forces that hold the nodes in their motions.
-    /// wide: by registers of 32 bytes; gives the same bytes.
-    template <int width, typename Motions, typename Visit>
+    /// which: of the springs. wide: by registers of 32 bytes; gives the same bytes.
+    template <int width, Which which = Which::all, typename Motions, typename Visit>
     void for_forces(std::size_t chunk, const Motions& motions, const Visit& visit, bool wide = has_wide_registers) const {
         static thread_local std::vector<Freedoms<Real, width>> sums;
         const Chunk& c = chunks_[chunk];
         sums.assign(c.last_node - c.first_node + 1, Freedoms<Real, width>{});  // the last for what belongs to other chunks
 #if defined(__x86_64__)
         if (wide)
-            add_wide<width>(c, motions, sums.data());
+            add_wide<width, which>(c, motions, sums.data());
         else
 #endif
-            add_forces<width, false>(c, motions, sums.data());
+            add_forces<width, which, false>(c, motions, sums.data());
         for (const auto& [node, stiffness] : held_)
             if (node >= c.first_node && node < c.last_node)
                 add_ground<width>(stiffness, motion_at<Real, width>(motions, node), sums[node - c.first_node]);
@@ -104,25 +107,32 @@ class Springs {
     template <typename Other>
     friend class Springs;
 
-    struct Chunk {
-        std::size_t first_node, last_node;
-        std::size_t first_spring, last_spring;      // whose first node is in the chunk
-        std::size_t first_incoming, last_incoming;  // others whose second node is
+    /// Of a list: the active ones, then those that may be idle.
+    struct Run {
+        std::size_t first, idle, last;
+
+        std::size_t end(Which which) const { return which == Which::active ? idle : last; }
     };
 
-    template <int width, bool one_register, typename Motions>
+    struct Chunk {
+        std::size_t first_node, last_node;
+        Run own;       // of springs_, whose first node is in the chunk
+        Run incoming;  // of incoming_: others whose second node is
+    };
+
+    template <int width, Which which, bool one_register, typename Motions>
     KILN_INLINE void add_forces(const Chunk& c, const Motions& motions, Freedoms<Real, width>* sums) const {
         const auto first = static_cast<std::uint32_t>(c.first_node), count = static_cast<std::uint32_t>(c.last_node) - first;
-        for (std::size_t k = c.first_spring; k < c.last_spring; ++k) {
+        for (std::size_t k = c.own.first, end = c.own.end(which); k < end; ++k) {
             const Spring<Real>& spring = springs_[k];
-            expect(motions[at(springs_[std::min(k + springs_ahead, c.last_spring - 1)].second)]);
+            expect(motions[at(springs_[std::min(k + springs_ahead, end - 1)].second)]);
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
             add_force<one_register>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[i - first],
                                    sums[std::min(j - first, count)]);
         }
-        for (std::size_t k = c.first_incoming; k < c.last_incoming; ++k) {
+        for (std::size_t k = c.incoming.first, end = c.incoming.end(which); k < end; ++k) {
             const Spring<Real>& spring = springs_[incoming_[k]];
-            expect(motions[at(springs_[incoming_[std::min(k + springs_ahead, c.last_incoming - 1)]].first)]);
+            expect(motions[at(springs_[incoming_[std::min(k + springs_ahead, end - 1)]].first)]);
             const auto i = static_cast<std::uint32_t>(spring.first), j = static_cast<std::uint32_t>(spring.second);
             add_force<one_register>(spring, motion_at<Real, width>(motions, i), motion_at<Real, width>(motions, j), sums[count],
                                    sums[j - first]);
@@ -130,9 +140,9 @@ class Springs {
     }
 
 #if defined(__x86_64__)
-    template <int width, typename Motions>
+    template <int width, Which which, typename Motions>
     [[gnu::target("avx2")]] void add_wide(const Chunk& c, const Motions& motions, Freedoms<Real, width>* sums) const {
-        add_forces<width, std::is_same_v<Real, float>>(c, motions, sums);
+        add_forces<width, which, std::is_same_v<Real, float>>(c, motions, sums);
     }
 #endif
 

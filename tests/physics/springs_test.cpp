@@ -88,7 +88,7 @@ TEST_CASE("the widest registers of this processor give the same bytes as the nar
     const BondNetwork network = rough_network({30, 9, 9}, false);
     const Springs<double> springs(network.nodes(), springs_of(network));
     const auto check = [&]<typename Real, int width>() {
-        const Springs<Real> rounded(springs, 1.0);
+        const Springs<Real> rounded(springs, 1.0, [](const auto& spring) { return spring.first % 3 == 0; });
         std::vector<Freedoms<Real, width>> motions;
         for (std::size_t node = 0; node < network.nodes(); ++node) {
             Values<double, width> values;
@@ -110,6 +110,28 @@ TEST_CASE("the widest registers of this processor give the same bytes as the nar
     check.operator()<float, 3>();
     check.operator()<double, 1>();
     check.operator()<double, 3>();
+}
+
+TEST_CASE("forces without idle springs are those of the network without them") {
+    const BondNetwork network = rough_network({30, 9, 9}, true);
+    const std::vector<Spring<double>> all = springs_of(network);
+    const auto idle = [](const Spring<double>& spring) { return (spring.first + spring.second) % 3 == 0; };
+    std::vector<Spring<double>> active;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(active), [&](const auto& spring) { return !idle(spring); });
+    REQUIRE(active.size() < 0.8 * static_cast<double>(all.size()));
+    const Springs<double> parted(Springs<double>(network.nodes(), all), 2.0, idle);
+    Vector x(network.nodes()), without(network.nodes()), expected;
+    for (std::size_t node = 0; node < network.nodes(); ++node) x[node] = rough_motion(node, 0);
+    multiply(Springs<double>(network.nodes(), active), x, expected);
+    for (std::size_t chunk = 0; chunk < parted.chunks(); ++chunk)
+        parted.for_forces<1, Which::active>(
+            chunk, x, [&](std::size_t node, const Freedoms<double, 1>& force) { without[node] = 0.5 * values_of(force); });
+    CHECK(parted.chunks() > 1);
+    for (std::size_t node = 0; node < network.nodes(); ++node) CHECK((without[node] - expected[node]).norm() <= 1e-14 * norm(expected));
+    multiply(parted, x, without);
+    multiply(Springs<double>(network.nodes(), all), x, expected);
+    for (std::size_t node = 0; node < network.nodes(); ++node)
+        CHECK((0.5 * without[node] - expected[node]).norm() <= 1e-14 * norm(expected));
 }
 
 TEST_CASE("springs that are softened are those of the softer network") {
