@@ -48,9 +48,6 @@ class Equilibria {
     /// The punch is lifted off: the bar starts anew.
     void release() { problem_.release(); }
 
-    /// What led to the last equilibrium is given up to save memory: others are sought from this one alone. Not with friction.
-    void forget_search() { problem_.join_responses(); }
-
     double friction_loss() const { return problem_.friction_loss(); }  // J, since the beginning
 
     mechanics::Equilibrium& last() { return last_; }

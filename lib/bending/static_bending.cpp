@@ -13,7 +13,6 @@ namespace {
 
 constexpr double deflection_tolerance = 1e-6;
 constexpr int max_trials = 12;
-constexpr std::size_t nodes_of_large_bar = 300000;  // where memory counts more than a tenth of the time
 
 /// What an equilibrium is for: the first guess of a force, one near the force sought, or the curve.
 enum class Purpose { guess, trial, curve };
@@ -82,7 +81,6 @@ std::vector<Point> cycled(const std::vector<Level>& levels, int cycles) {
 
 /// All cycles of an elastic bar, from the peak down: each level is solved once.
 void cycle_elastic(Equilibria& equilibria, const Level& peak, const Options& options, const Watch& watch, Result& result) {
-    if (result.specimen.body.network.nodes() > nodes_of_large_bar) equilibria.forget_search();
     std::vector<Level> levels{peak};
     for (int point = options.points - 1; point > 0; --point) {
         watch.at(1.0 - static_cast<double>(point) / options.points);

@@ -11,7 +11,7 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr std::size_t max_fields = 120;
-constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before their sum takes their place
+constexpr std::size_t fields_to_begin_with = 28;  // of a search; what it finds more is joined to the oldest
 constexpr int iterations_of_a_response = 5;       // what these leave, later responses find together, and sooner
 constexpr int many_iterations = 1000;             // where soft motions do not show in few: after breaks, or as the space fills
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
@@ -124,6 +124,7 @@ Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
     Equilibrium state;
     Eigen::VectorXd before;  // freedoms before the last field was added; empty if none was
     double before_residual = 0.0;
+    if (!contacts_.friction()) join_old_fields();  // friction joins what it keeps
     while (true) {
         const bool settled = settle(load, tolerance);
         ContactSet::Forces forces = contacts_.forces(freedoms_);
@@ -134,7 +135,7 @@ Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
                            !(state.residual < min_progress * before_residual);
         if (stuck) {
             space_.remove_last();
-            contacts_.keep_fields(space_.fields());
+            contacts_.remove_fields(space_.fields(), space_.fields() + 1);
             freedoms_ = before;
             contacts_.follow(freedoms_);
             forces = contacts_.forces(freedoms_);
@@ -165,19 +166,27 @@ void ContactProblem::conclude(Equilibrium& state, const ContactSet::Forces& forc
     state.punch_compliance = tangent_stiffness(space_, contacts_, forces, freedoms_).ldlt().solve(unit)[0];
 }
 
-void ContactProblem::join_responses() {
-    const Vector sum = space_.sum_of_responses(freedoms_);
+/// Takes the oldest of many fields as one, as they are now: memory is for fields that serve.
+void ContactProblem::join_old_fields() {
+    if (space_.fields() <= fields_to_begin_with) return;
+    const std::size_t first = space_.rigid_motions(), last = first + 1 + space_.fields() - fields_to_begin_with;
+    const Vector sum = space_.sum(freedoms_, first, last);
     const double unit = contacts_.max_approach(sum);
-    space_.replace_responses(solver_, sum, unit);
-    const auto last = static_cast<Eigen::Index>(space_.fields());
-    contacts_.keep_fields(space_.rigid_motions());
+    if (!(unit > 0.0)) return;
+    space_.join(solver_, first, last, sum, unit);
+    freedoms_ = freedoms_(freedoms_without(static_cast<std::size_t>(freedoms_.size()) - 1, first, last)).eval();
+    freedoms_.conservativeResize(freedoms_.size() + 1);
+    freedoms_[freedoms_.size() - 1] = unit;
+    contacts_.remove_fields(first, last);
     contacts_.add_field(space_, space_.fields() - 1);
-    freedoms_.conservativeResize(last + 1);
-    freedoms_[last] = unit;
+}
+
+void ContactProblem::keep() {
+    contacts_.keep(freedoms_);
+    if (contacts_.friction()) join_old_fields();
 }
 
 void ContactProblem::soften(std::size_t bond, double share, const PairContact& ends) {
-    if (space_.fields() > fields_of_a_sequence) join_responses();
     softened_ = true;
     space_.soften(bond, share);
     solver_.soften(network_, bond, share);

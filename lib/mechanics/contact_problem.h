@@ -57,13 +57,10 @@ class ContactProblem {
     Equilibrium relax(double force, double tolerance) { return search({force, true}, tolerance); }
 
     /// The last equilibrium counts as gone through: friction of those to come starts from there.
-    void keep() { contacts_.keep(freedoms_); }
+    void keep();
 
     /// The punch and with it all force is gone; loading begins anew.
     void release();
-
-    /// Keeps of all elastic fields only what they add up to now: contacts without friction need no more of the past.
-    void join_responses();
 
     double friction_loss() const { return contacts_.lost(freedoms_); }  // J, since the beginning
 
@@ -76,6 +73,7 @@ class ContactProblem {
     bool settle(const PunchLoad& load, double tolerance);
     Vector unbalanced(const ContactSet::Forces& forces) const;
     bool add_response(const Vector& unbalanced, int& iterations);
+    void join_old_fields();
     void conclude(Equilibrium& state, const ContactSet::Forces& forces, const PunchLoad& load) const;
 
     const BondNetwork& network_;

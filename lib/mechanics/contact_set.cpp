@@ -110,11 +110,11 @@ void ContactSet::add_field(const ReducedSpace& space, std::size_t field) {
     kept_[column] = 0.0;
 }
 
-void ContactSet::keep_fields(std::size_t fields) {
-    const auto columns = static_cast<Eigen::Index>(fields) + 1;
-    approach_.conservativeResize(Eigen::NoChange, columns);
-    sliding_.conservativeResize(Eigen::NoChange, columns);
-    kept_.conservativeResize(columns);
+void ContactSet::remove_fields(std::size_t first, std::size_t last) {
+    const std::vector<Eigen::Index> others = freedoms_without(at(approach_.cols()) - 1, first, last);
+    approach_ = approach_(Eigen::all, others).eval();
+    sliding_ = sliding_(Eigen::all, others).eval();
+    kept_ = kept_(others).eval();
 }
 
 Eigen::VectorXd ContactSet::overlaps(const Eigen::VectorXd& freedoms) const {

@@ -44,9 +44,9 @@ class ContactSet {
     /// How far a displacement closes or opens the contact that it moves most, m.
     double max_approach(const Vector& displacement) const;
 
-    /// The space has one more field at its end, or only so many of the first ones.
+    /// The space has one more field at its end, or no longer has fields [first, last).
     void add_field(const ReducedSpace& space, std::size_t field);
-    void keep_fields(std::size_t fields);
+    void remove_fields(std::size_t first, std::size_t last);
 
     /// This pair may touch from now on.
     void add_pair(const PairContact& pair) { open_pairs_.push_back(pair); }

@@ -3,7 +3,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <array>
 #include <utility>
+
+#include "linalg/wide_registers.h"
 
 namespace kiln::mechanics {
 
@@ -18,12 +21,35 @@ std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
 std::size_t chunks_of(std::size_t nodes) { return (nodes + nodes_in_chunk - 1) / nodes_in_chunk; }
 
+// By single numbers, whose order the compiler keeps whatever registers it has.
+
+double product_of(std::size_t nodes, const Vec6* a, const Vec6* b) {
+    const double *x = a->data(), *y = b->data();
+    std::array<double, 6> sums{};
+    for (std::size_t k = 0; k < 6 * nodes; k += 6)
+        for (std::size_t freedom = 0; freedom < 6; ++freedom) sums[freedom] += x[k + freedom] * y[k + freedom];
+    return sums[0] + sums[1] + sums[2] + sums[3] + sums[4] + sums[5];
+}
+
+void add_scaled(double factor, std::size_t nodes, const Vec6* from, Vec6* to) {
+    const double* x = from->data();
+    double* y = to->data();
+    for (std::size_t k = 0; k < 6 * nodes; ++k) y[k] += factor * x[k];
+}
+
 /// Of a response, among the freedoms.
 Eigen::Index place_of(std::size_t rigid_motions, std::size_t response) {
     return static_cast<Eigen::Index>(rigid_motions + response) + 1;
 }
 
 }  // namespace
+
+std::vector<Eigen::Index> freedoms_without(std::size_t fields, std::size_t first, std::size_t last) {
+    std::vector<Eigen::Index> others;
+    for (std::size_t freedom = 0; freedom <= fields; ++freedom)
+        if (freedom <= first || freedom > last) others.push_back(static_cast<Eigen::Index>(freedom));
+    return others;
+}
 
 ReducedSpace::ReducedSpace(const BondNetwork& network) : network_(network), stiffness_(Eigen::MatrixXd::Zero(1, 1)) {
     Vec3 low = network.position.front(), high = low;
@@ -45,10 +71,6 @@ Vec6 ReducedSpace::displacement(std::size_t field, std::size_t node) const {
     return field < rigid_.size() ? displacement(rigid_[field], node) : responses_[field - rigid_.size()][node];
 }
 
-Eigen::VectorXd ReducedSpace::amplitudes_of_responses(const Eigen::VectorXd& freedoms) const {
-    return freedoms.tail(static_cast<Eigen::Index>(responses_.size()));
-}
-
 /// What a force on the nodes does on each response, N.
 Eigen::VectorXd ReducedSpace::work(const Vector& force) const {
     const auto count = static_cast<Eigen::Index>(responses_.size());
@@ -56,48 +78,42 @@ Eigen::VectorXd ReducedSpace::work(const Vector& force) const {
         Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
         const std::size_t first = chunk * nodes_in_chunk, last = std::min(force.size(), first + nodes_in_chunk);
         std::array<Vec6, nodes_in_chunk> field;
-        for (Eigen::Index k = 0; k < count; ++k) {
-            responses_[static_cast<std::size_t>(k)].read(first, last, field.data());
-            for (std::size_t node = first; node < last; ++node) sum[k] += field[node - first].dot(force[node]);
-        }
+        linalg::in_widest_registers([&] {
+            for (Eigen::Index k = 0; k < count; ++k) {
+                responses_[static_cast<std::size_t>(k)].read(first, last, field.data());
+                sum[k] = product_of(last - first, field.data(), &force[first]);
+            }
+        });
         return sum;
     });
 }
 
-/// Adds the responses times their amplitudes and a factor.
-void ReducedSpace::add_scaled(double factor, const Eigen::VectorXd& amplitudes, Vector& displacement) const {
-    for_chunks(chunks_of(displacement.size()), [&](std::size_t chunk) {
-        const std::size_t first = chunk * nodes_in_chunk, last = std::min(displacement.size(), first + nodes_in_chunk);
-        std::array<Vec6, nodes_in_chunk> field;
-        for (std::size_t k = 0; k < responses_.size(); ++k) {
-            const double amplitude = factor * amplitudes[static_cast<Eigen::Index>(k)];
-            responses_[k].read(first, last, field.data());
-            for (std::size_t node = first; node < last; ++node) displacement[node] += amplitude * field[node - first];
-        }
-    });
-}
-
-Vector ReducedSpace::sum_of_responses(const Eigen::VectorXd& freedoms) const {
+Vector ReducedSpace::sum(const Eigen::VectorXd& freedoms, std::size_t first, std::size_t last) const {
     Vector sum(network_.nodes(), Vec6::Zero());
-    add_scaled(1.0, amplitudes_of_responses(freedoms), sum);
+    for_chunks(chunks_of(sum.size()), [&](std::size_t chunk) {
+        const std::size_t begin = chunk * nodes_in_chunk, end = std::min(sum.size(), begin + nodes_in_chunk);
+        std::array<Vec6, nodes_in_chunk> field;
+        linalg::in_widest_registers([&] {
+            for (std::size_t k = first; k < last; ++k) {
+                responses_[k - rigid_.size()].read(begin, end, field.data());
+                add_scaled(freedoms[static_cast<Eigen::Index>(k) + 1], end - begin, field.data(), &sum[begin]);
+            }
+        });
+    });
     return sum;
 }
 
 Vector ReducedSpace::displacement(const Eigen::VectorXd& freedoms) const {
-    Vector sum = sum_of_responses(freedoms);
+    Vector sum = this->sum(freedoms, rigid_.size(), fields());
+    const RigidMotion motion = sum_of_rigid_motions(freedoms.segment(1, static_cast<Eigen::Index>(rigid_.size())));
     for_rows(
-        sum.size(),
-        [&](std::size_t node) {
-            for (std::size_t k = 0; k < rigid_.size(); ++k)
-                sum[node] += freedoms[static_cast<Eigen::Index>(k) + 1] * displacement(rigid_[k], node);
-        },
-        worth_threads);
+        sum.size(), [&](std::size_t node) { sum[node] += displacement(motion, node); }, worth_threads);
     return sum;
 }
 
 Vector ReducedSpace::force(const ElasticSolver& solver, const Eigen::VectorXd& freedoms) const {
     Vector force;
-    solver.forces(sum_of_responses(freedoms), force);
+    solver.forces(sum(freedoms, rigid_.size(), fields()), force);
     return force;
 }
 
@@ -110,6 +126,12 @@ void ReducedSpace::add_freedom() {
 
 void ReducedSpace::add_rigid_motion(const Vec3& shift, const Vec3& turn) {
     rigid_.push_back({shift, turn / size_});
+    Vector motion(network_.nodes());
+    for (std::size_t node = 0; node < motion.size(); ++node) motion[node] = displacement(rigid_.back(), node);
+    const Eigen::VectorXd products = work_on_rigid_motions(motion);
+    rigid_products_.conservativeResize(products.size(), products.size());
+    rigid_products_.rightCols<1>() = products;
+    rigid_products_.bottomRows<1>() = products.transpose();
     add_freedom();
 }
 
@@ -120,31 +142,38 @@ ReducedSpace::Response ReducedSpace::response(ElasticSolver& solver, const Vecto
     return response;
 }
 
-/// Takes from a displacement what rigid motions have of it, by least squares.
-void ReducedSpace::remove_rigid_motions(Vector& displacement) const {
-    constexpr int most = 6;
-    using Sums = Eigen::Matrix<double, most, most + 1>;  // products with each other, and with the displacement
-    const auto count = static_cast<Eigen::Index>(rigid_.size());
-    Sums zero = Sums::Zero();
-    const Sums sums = sum_chunks(chunks_of(displacement.size()), zero, [&](std::size_t chunk) {
-        Sums sum = zero;
-        Eigen::Matrix<double, 6, most> motions = Eigen::Matrix<double, 6, most>::Zero();
-        const std::size_t last = std::min(displacement.size(), (chunk + 1) * nodes_in_chunk);
+ReducedSpace::RigidMotion ReducedSpace::sum_of_rigid_motions(const Eigen::VectorXd& amplitudes) const {
+    RigidMotion sum{Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t k = 0; k < rigid_.size(); ++k) {
+        sum.shift += amplitudes[static_cast<Eigen::Index>(k)] * rigid_[k].shift;
+        sum.turn += amplitudes[static_cast<Eigen::Index>(k)] * rigid_[k].turn;
+    }
+    return sum;
+}
+
+/// Products of a field with each rigid motion, by its resultant and its moment about the middle.
+Eigen::VectorXd ReducedSpace::work_on_rigid_motions(const Vector& force) const {
+    const Vec6 total = sum_chunks(chunks_of(force.size()), Vec6(Vec6::Zero()), [&](std::size_t chunk) {
+        Vec6 sum = Vec6::Zero();
+        const std::size_t last = std::min(force.size(), (chunk + 1) * nodes_in_chunk);
         for (std::size_t node = chunk * nodes_in_chunk; node < last; ++node) {
-            for (Eigen::Index k = 0; k < count; ++k) motions.col(k) = this->displacement(rigid_[at(k)], node);
-            sum.leftCols<most>() += motions.transpose() * motions;
-            sum.rightCols<1>() += motions.transpose() * displacement[node];
+            const Vec3 push = force[node].head<3>();
+            sum.head<3>() += push;
+            sum.tail<3>() += (network_.position[node] - middle_).cross(push) + network_.rotation_length * force[node].tail<3>();
         }
         return sum;
     });
-    const Eigen::VectorXd work = sums.rightCols<1>().head(count);
-    const Eigen::VectorXd amplitude = sums.topLeftCorner(count, count).ldlt().solve(work);
+    Eigen::VectorXd work(static_cast<Eigen::Index>(rigid_.size()));
+    for (std::size_t k = 0; k < rigid_.size(); ++k)
+        work[static_cast<Eigen::Index>(k)] = rigid_[k].shift.dot(total.head<3>()) + rigid_[k].turn.dot(total.tail<3>());
+    return work;
+}
+
+/// Takes from a displacement what rigid motions have of it, by least squares.
+void ReducedSpace::remove_rigid_motions(Vector& displacement) const {
+    const RigidMotion motion = sum_of_rigid_motions(rigid_products_.ldlt().solve(work_on_rigid_motions(displacement)));
     for_rows(
-        displacement.size(),
-        [&](std::size_t node) {
-            for (Eigen::Index k = 0; k < count; ++k) displacement[node] -= amplitude[k] * this->displacement(rigid_[at(k)], node);
-        },
-        worth_threads);
+        displacement.size(), [&](std::size_t node) { displacement[node] -= this->displacement(motion, node); }, worth_threads);
 }
 
 bool ReducedSpace::add(const Response& response, double unit, const ElasticSolver* exact) {
@@ -185,8 +214,11 @@ void ReducedSpace::remove_last() {
     stiffness_.conservativeResize(stiffness_.rows() - 1, stiffness_.cols() - 1);
 }
 
-void ReducedSpace::replace_responses(const ElasticSolver& solver, const Vector& sum, double unit) {
-    while (!responses_.empty()) remove_last();
+void ReducedSpace::join(const ElasticSolver& solver, std::size_t first, std::size_t last, const Vector& sum, double unit) {
+    const std::vector<Eigen::Index> others = freedoms_without(fields(), first, last);
+    stiffness_ = stiffness_(others, others).eval();
+    const auto place = [&](std::size_t field) { return responses_.begin() + static_cast<std::ptrdiff_t>(field - rigid_.size()); };
+    responses_.erase(place(first), place(last));
     add_response({sum, {}, 0}, unit, &solver, -1.0);
 }
 

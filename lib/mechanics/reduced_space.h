@@ -46,10 +46,10 @@ class ReducedSpace {
     bool add(const Response& response, double unit, const ElasticSolver* exact = nullptr);
     void remove_last();
 
-    /// What all responses add up to now.
-    Vector sum_of_responses(const Eigen::VectorXd& freedoms) const;
-    /// Takes their sum, divided by the unit, in the place of all responses.
-    void replace_responses(const ElasticSolver& solver, const Vector& sum, double unit);
+    /// What fields [first, last), no rigid motions, add up to now.
+    Vector sum(const Eigen::VectorXd& freedoms, std::size_t first, std::size_t last) const;
+    /// Takes them out, and their sum, divided by the unit, in as the last field.
+    void join(const ElasticSolver& solver, std::size_t first, std::size_t last, const Vector& sum, double unit);
 
     /// Leaves this share of a bond's stiffness, which the network still has whole.
     void soften(std::size_t bond, double share);
@@ -60,9 +60,9 @@ class ReducedSpace {
     };
 
     Vec6 displacement(const RigidMotion& motion, std::size_t node) const;
+    RigidMotion sum_of_rigid_motions(const Eigen::VectorXd& amplitudes) const;
+    Eigen::VectorXd work_on_rigid_motions(const Vector& force) const;
     Eigen::VectorXd work(const Vector& force) const;
-    void add_scaled(double factor, const Eigen::VectorXd& amplitudes, Vector& displacement) const;
-    Eigen::VectorXd amplitudes_of_responses(const Eigen::VectorXd& freedoms) const;
     void add_freedom();
     bool add_response(const Response& response, double unit, const ElasticSolver* exact, double least);
     void remove_rigid_motions(Vector& displacement) const;
@@ -71,8 +71,12 @@ class ReducedSpace {
     Vec3 middle_;
     double size_;
     std::vector<RigidMotion> rigid_;
+    Eigen::MatrixXd rigid_products_;  // of these with each other
     std::vector<CompactField> responses_;
     Eigen::MatrixXd stiffness_;
 };
+
+/// The freedoms of a space of so many fields without those of fields [first, last).
+std::vector<Eigen::Index> freedoms_without(std::size_t fields, std::size_t first, std::size_t last);
 
 }  // namespace kiln::mechanics

@@ -99,25 +99,41 @@ TEST_CASE("fields of a reduced space: rigid motions strain nothing, responses ha
     CHECK(space.add(other, 1e-11));
 }
 
-TEST_CASE("responses that become one field keep displacement, force and energy") {
+TEST_CASE("fields that become one keep displacement, force and energy") {
+    const BondNetwork network = rough_body().network;
+    ElasticSolver solver(network, Ground::displacement_and_rotation);
+    for (const std::size_t last : {5, 6, 7}) {
+        ReducedSpace space(network);
+        fill(space, solver, network, 4);
+        const Eigen::VectorXd freedoms = uneven_freedoms(space);
+        const Vector displacement = space.displacement(freedoms), force = space.force(solver, freedoms);
+        const double energy = space.energy(freedoms), unit = 3e-12;
+        space.join(solver, 3, last, space.sum(freedoms, 3, last), unit);
+        REQUIRE(space.fields() == 3 + (7 - last) + 1);
+        const auto left = static_cast<Eigen::Index>(7 - last);
+        Eigen::VectorXd joined(4 + left + 1);
+        joined << freedoms.head(4), freedoms.tail(left), unit;
+        // A field has 48 bits a value.
+        const double rounding = std::exp2(-37) * 10.0 * network.stiffness.front().normal * linalg::norm(displacement);
+        CHECK(rounding < 1e-8 * linalg::norm(force));
+        CHECK(space.energy(joined) == relative(energy, 1e-9));
+        for (std::size_t node = 0; node < network.nodes(); ++node) {
+            CHECK((space.displacement(joined)[node] - displacement[node]).norm() < 1e-12 * linalg::norm(displacement));
+            CHECK((space.force(solver, joined)[node] - force[node]).norm() < rounding);
+        }
+    }
+}
+
+TEST_CASE("responses have no part of a rigid motion") {
     const BondNetwork network = rough_body().network;
     ElasticSolver solver(network, Ground::displacement_and_rotation);
     ReducedSpace space(network);
-    fill(space, solver, network, 3);
-    const Eigen::VectorXd freedoms = uneven_freedoms(space);
-    const Vector displacement = space.displacement(freedoms), force = space.force(solver, freedoms);
-    const double energy = space.energy(freedoms), unit = 3e-12;
-    space.replace_responses(solver, space.sum_of_responses(freedoms), unit);
-    REQUIRE(space.fields() == 4);
-    Eigen::VectorXd joined = freedoms.head(5);
-    joined[4] = unit;
-    // A field has 48 bits a value.
-    const double rounding = std::exp2(-37) * 10.0 * network.stiffness.front().normal * linalg::norm(displacement);
-    CHECK(rounding < 1e-8 * linalg::norm(force));
-    CHECK(space.energy(joined) == relative(energy, 1e-9));
-    for (std::size_t node = 0; node < network.nodes(); ++node) {
-        CHECK((space.displacement(joined)[node] - displacement[node]).norm() < 1e-12 * linalg::norm(displacement));
-        CHECK((space.force(solver, joined)[node] - force[node]).norm() < rounding);
+    fill(space, solver, network, 0);
+    const Vector response = space.response(solver, uneven_load(network, 1), 10).displacement;
+    for (std::size_t field = 0; field < 3; ++field) {
+        Vector motion(network.nodes());
+        for (std::size_t node = 0; node < network.nodes(); ++node) motion[node] = space.displacement(field, node);
+        CHECK(std::abs(linalg::dot(motion, response)) < 1e-12 * linalg::norm(motion) * linalg::norm(response));
     }
 }
 
