@@ -11,7 +11,8 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr std::size_t max_fields = 120;
-constexpr std::size_t fields_to_begin_with = 28;  // of a search; what it finds more is joined to the oldest
+constexpr std::size_t fields_to_begin_with = 28;  // of a search in a sound body; those of more that are the oldest become one
+constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before all become one
 constexpr int iterations_of_a_response = 5;       // what these leave, later responses find together, and sooner
 constexpr int many_iterations = 1000;             // where soft motions do not show in few: after breaks, or as the space fills
 constexpr double rounding_residual = 1e-9;        // below which rounding may have the last word
@@ -124,7 +125,8 @@ Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
     Equilibrium state;
     Eigen::VectorXd before;  // freedoms before the last field was added; empty if none was
     double before_residual = 0.0;
-    if (!contacts_.friction()) join_old_fields();  // friction joins what it keeps
+    const bool remembers = contacts_.friction();  // the equilibrium that was kept
+    if (!softened_ && !remembers) join_old_fields(fields_to_begin_with, fields_to_begin_with);
     while (true) {
         const bool settled = settle(load, tolerance);
         ContactSet::Forces forces = contacts_.forces(freedoms_);
@@ -166,15 +168,16 @@ void ContactProblem::conclude(Equilibrium& state, const ContactSet::Forces& forc
     state.punch_compliance = tangent_stiffness(space_, contacts_, forces, freedoms_).ldlt().solve(unit)[0];
 }
 
-/// Takes the oldest of many fields as one, as they are now: memory is for fields that serve.
-void ContactProblem::join_old_fields() {
-    if (space_.fields() <= fields_to_begin_with) return;
-    const std::size_t first = space_.rigid_motions(), last = first + 1 + space_.fields() - fields_to_begin_with;
+/// Takes the oldest of more than so many fields as one, as they are now, so that these are left: memory is for fields that serve.
+void ContactProblem::join_old_fields(std::size_t most, std::size_t left) {
+    const std::size_t fields = space_.fields(), first = space_.rigid_motions();
+    if (fields <= most) return;
+    const std::size_t last = fields - std::max(left, first + 1) + first + 1;
     const Vector sum = space_.sum(freedoms_, first, last);
     const double unit = contacts_.max_approach(sum);
     if (!(unit > 0.0)) return;
     space_.join(solver_, first, last, sum, unit);
-    freedoms_ = freedoms_(freedoms_without(static_cast<std::size_t>(freedoms_.size()) - 1, first, last)).eval();
+    freedoms_ = freedoms_(freedoms_without(fields, first, last)).eval();
     freedoms_.conservativeResize(freedoms_.size() + 1);
     freedoms_[freedoms_.size() - 1] = unit;
     contacts_.remove_fields(first, last);
@@ -183,10 +186,11 @@ void ContactProblem::join_old_fields() {
 
 void ContactProblem::keep() {
     contacts_.keep(freedoms_);
-    if (contacts_.friction()) join_old_fields();
+    if (contacts_.friction()) join_old_fields(fields_to_begin_with, fields_to_begin_with);
 }
 
 void ContactProblem::soften(std::size_t bond, double share, const PairContact& ends) {
+    join_old_fields(fields_of_a_sequence, 1);
     softened_ = true;
     space_.soften(bond, share);
     solver_.soften(network_, bond, share);

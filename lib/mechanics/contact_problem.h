@@ -73,7 +73,7 @@ class ContactProblem {
     bool settle(const PunchLoad& load, double tolerance);
     Vector unbalanced(const ContactSet::Forces& forces) const;
     bool add_response(const Vector& unbalanced, int& iterations);
-    void join_old_fields();
+    void join_old_fields(std::size_t most, std::size_t left);
     void conclude(Equilibrium& state, const ContactSet::Forces& forces, const PunchLoad& load) const;
 
     const BondNetwork& network_;

@@ -127,7 +127,8 @@ TEST_CASE("forces without idle springs are those of the network without them") {
         parted.for_forces<1, Which::active>(
             chunk, x, [&](std::size_t node, const Freedoms<double, 1>& force) { without[node] = 0.5 * values_of(force); });
     CHECK(parted.chunks() > 1);
-    for (std::size_t node = 0; node < network.nodes(); ++node) CHECK((without[node] - expected[node]).norm() <= 1e-14 * norm(expected));
+    for (std::size_t node = 0; node < network.nodes(); ++node) 
+        CHECK((without[node] - expected[node]).norm() <= 1e-14 * norm(expected));
     multiply(parted, x, without);
     multiply(Springs<double>(network.nodes(), all), x, expected);
     for (std::size_t node = 0; node < network.nodes(); ++node)
