@@ -11,7 +11,7 @@ namespace kiln::mechanics {
 namespace {
 
 constexpr std::size_t max_fields = 120;
-constexpr std::size_t fields_to_begin_with = 28;  // of a search in a sound body; those of more that are the oldest become one
+constexpr std::size_t fields_to_begin_with = 26;  // of a search in a sound body; those of more that are the oldest become one
 constexpr std::size_t fields_of_a_sequence = 60;  // of bonds that are softened, before all become one
 constexpr int iterations_of_a_response = 5;       // what these leave, later responses find together, and sooner
 constexpr int many_iterations = 1000;             // where soft motions do not show in few: after breaks, or as the space fills

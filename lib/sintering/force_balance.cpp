@@ -10,18 +10,25 @@ namespace {
 
 constexpr double negligible = 1e-6;  // of the mean over the particles
 
+double size_of(const Motion& left, std::size_t row) { return Eigen::Map<const Vec3>(&left.displacement[3 * row]).norm(); }
+
 double worst_of(const Motion& left, std::span<const double> scale, double least) {
-    return greatest_of_rows(scale.size(), 0.0, [&](std::size_t row) {
-        return Eigen::Map<const Vec3>(&left.displacement[3 * row]).norm() / std::max(scale[row], least);
-    });
+    return greatest_of_rows(scale.size(), 0.0,
+                            [&](std::size_t row) { return size_of(left, row) / std::max(scale[row], least); });
 }
 
-}  // namespace
+/// What the contacts of each particle exert if all add up.
+struct Exerted {
+    std::vector<double> on;  // particle
+    double sum = 0.0;
 
-double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs, std::span<const double> exerted,
-                     std::span<const RigidClusters> coarse, const Motion& left) {
-    std::vector<double> scale(network.particles(), 0.0);
-    const double sum = network.sum_chunks(0.0, [&](std::size_t index) {
+    double least() const { return negligible * sum / static_cast<double>(on.size()); }
+};
+
+Exerted exerted_on_particles(const ContactNetwork& network, std::span<const double> exerted) {
+    Exerted result{std::vector<double>(network.particles(), 0.0)};
+    std::vector<double>& scale = result.on;
+    result.sum = network.sum_chunks(0.0, [&](std::size_t index) {
         const ContactNetwork::Chunk& chunk = network.chunks()[index];
         for (std::size_t entry = chunk.begin; entry < chunk.end; ++entry)
             for (const std::int32_t particle : {network.first[entry], network.second[entry]}) {
@@ -33,9 +40,18 @@ double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs,
         for (std::size_t row = chunk.first_particle; row < chunk.last_particle; ++row) part += scale[row];
         return part;
     });
-    if (!(sum > 0.0)) return 0.0;
-    const double least = negligible * sum / static_cast<double>(network.particles());
-    double worst = worst_of(left, scale, least);
+    return result;
+}
+
+}  // namespace
+
+double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs, std::span<const double> exerted,
+                     std::span<const RigidClusters> coarse, const Motion& left) {
+    const Exerted particles = exerted_on_particles(network, exerted);
+    if (!(particles.sum > 0.0)) return 0.0;
+    const double least = particles.least();
+    double worst = worst_of(left, particles.on, least);
+    std::vector<double> scale;
     for (const RigidClusters& clusters : coarse) {
         scale.assign(clusters.nodes(), 0.0);
         for (const RigidClusters::NodePair& pair : clusters.node_pairs(pairs)) {
@@ -46,6 +62,15 @@ double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs,
         worst = std::max(worst, worst_of(clusters.node_forces(left), scale, least));
     }
     return worst;
+}
+
+std::vector<std::size_t> unbalanced_particles(const ContactNetwork& network, std::span<const double> exerted, double limit,
+                                              const Motion& left) {
+    const Exerted particles = exerted_on_particles(network, exerted);
+    std::vector<std::size_t> unbalanced;
+    for (std::size_t row = 0; row < particles.on.size(); ++row)
+        if (size_of(left, row) > limit * std::max(particles.on[row], particles.least())) unbalanced.push_back(row);
+    return unbalanced;
 }
 
 }  // namespace kiln::sintering

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sintering/contact_network.h"
 #include "sintering/rigid_clusters.h"
@@ -14,5 +15,9 @@ namespace kiln::sintering {
 /// mean.
 double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs, std::span<const double> exerted,
                      std::span<const RigidClusters> coarse, const Motion& left);
+
+/// Particles on which more than `limit` of what their contacts exert is left.
+std::vector<std::size_t> unbalanced_particles(const ContactNetwork& network, std::span<const double> exerted, double limit,
+                                              const Motion& left);
 
 }  // namespace kiln::sintering

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "core/contacts.h"
 #include "physics/sinter_contact.h"
+#include "sintering/few_particles.h"
 #include "sintering/force_balance.h"
 
 namespace kiln::sintering {
@@ -27,6 +29,8 @@ constexpr double linear_fraction = 0.5;    // of the tolerance, that is left to 
 constexpr double imbalance_factor = 15.0;  // times the tolerance, forces left on a single particle, where the tolerance is for all:
 constexpr double min_single = 1e-3;        // a tenth of it is typical; within these bounds
 constexpr double max_single = 0.5;
+constexpr double few = 1e-3;               // of the particles, that are moved alone where only they are out of balance
+constexpr double min_progress = 0.7;       // of what is left on the worst, below which moving them alone was worth it
 constexpr double sharpening = 0.5;         // of what linear solves may leave, where that still unbalances a particle
 constexpr double limit_stiffness = 10.0;   // of the springs at limits of rigid particles, over the mean tangent of the contacts
 constexpr double limit_accuracy = 1e-7;    // of the reduced radius, to which a limit of approach is met
@@ -225,14 +229,25 @@ void SinterStep::forces(const Motion& motion, bool secant) {
     if (!std::isfinite(work_)) throw Error("a step of sintering meets a force that is not a finite number");
 }
 
-double SinterStep::imbalance() const {
+/// Size of each pair's force. Of a pair that touches for a part of the step the whole sintering force: the part may be next to
+/// nothing.
+std::vector<double> SinterStep::exerted() const {
     std::vector<double> exerted(step_.size());
-    // Of a pair that touches for a part of the step the whole sintering force: the part may be next to nothing.
+    network_.for_chunks([&](std::size_t chunk) {
+        network_.for_owned(chunk, [&](std::size_t entry) {
+            const auto row = static_cast<std::size_t>(network_.pair[entry]);
+            exerted[row] = step_[row].force + resisting_[entry];
+        });
+    });
+    return exerted;
+}
+
+double SinterStep::imbalance() const {
+    const std::vector<double> exerted = this->exerted();
     Vec3 on_box = network_.sum_chunks<Vec3>(pressure_volume_.cwiseAbs(), [&](std::size_t chunk) {
         Vec3 part = Vec3::Zero();
         network_.for_owned(chunk, [&](std::size_t entry) {
             const auto row = static_cast<std::size_t>(network_.pair[entry]);
-            exerted[row] = step_[row].force + resisting_[entry];
             part += exerted[row] * entries_[entry].normal.cwiseProduct(branch_[row]).cwiseAbs();
         });
         return part;
@@ -248,6 +263,22 @@ double SinterStep::imbalance() const {
     for (const RigidClusters& clusters : coarse_)  // the box as it strains with clusters that move as one
         judge_box(settings_.allowed_strain * clusters.node_forces(unbalanced_).strain);
     return worst;
+}
+
+/// The particles that are out of balance by more than the limit, if they are few.
+std::vector<std::size_t> SinterStep::few_unbalanced(double limit) const {
+    if (!coarse_.empty()) return {};  // clusters may be out of balance as well
+    std::vector<std::size_t> particles = unbalanced_particles(network_, exerted(), limit, unbalanced_);
+    if (static_cast<double>(particles.size()) > few * static_cast<double>(network_.particles())) particles.clear();
+    return particles;
+}
+
+/// The direction in which these and their neighbours are balanced.
+void SinterStep::relax(const std::vector<std::size_t>& particles) {
+    std::visit([&](auto& solver) {
+        const auto stiffness = [&](std::size_t entry) { return solver->springs().spring(entry).block(); };
+        relax_few(network_, stiffness, particles, unbalanced_, direction_);
+    }, solver_);
 }
 
 double SinterStep::line_search(double slope, Motion& motion) {
@@ -276,20 +307,25 @@ double SinterStep::line_search(double slope, Motion& motion) {
 bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepReport& report) {
     const double balanced = std::clamp(imbalance_factor * tolerance, min_single, max_single);
     double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
-    double closeness = 1.0, foretold = HUGE_VAL;
+    double closeness = 1.0, foretold = HUGE_VAL, imbalance_before = HUGE_VAL;
+    std::vector<std::size_t> alone;  // out of balance: only these and their neighbours move
     forces(motion, true);
     for (int iteration = 0; iteration < max_newton; ++iteration) {
-        const linalg::CgProgress linear = std::visit([&](auto& solver) {
-            solver->factorise(branch_);
-            // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are required.
-            return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
-                throw_if_stopped(settings_.stop);
-                const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
-                const double goal = std::clamp(closeness * size, min_linear, max_linear);
-                return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||
-                       progress.iterations >= max_conjugate_gradients;
-            });
-        }, solver_);
+        linalg::CgProgress linear;
+        if (alone.empty())
+            linear = std::visit([&](auto& solver) {
+                solver->factorise(branch_);
+                // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are required.
+                return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
+                    throw_if_stopped(settings_.stop);
+                    const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
+                    const double goal = std::clamp(closeness * size, min_linear, max_linear);
+                    return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||
+                           progress.iterations >= max_conjugate_gradients;
+                });
+            }, solver_);
+        else
+            relax(alone);
         ++report.newton;
         report.conjugate_gradients += linear.iterations;
         const double slope = dot(network_, unbalanced_, direction_);  // derivative along the direction, against which the step goes
@@ -301,16 +337,22 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
             const double length = line_search(slope, motion);
             error = std::sqrt(slope / std::max(work_, slope));  // of the motion before this iteration, energy norm
             now = length < 1.0 ? error : (linear.relative_error() + error) * error;
-            if (error > surprise * foretold) closeness *= closer;
-            foretold = now;
+            if (alone.empty()) {
+                if (error > surprise * foretold) closeness *= closer;
+                foretold = now;
+            }
             if (length < 0.5 && error < rounding) now = 0.0;
         }
+        const bool moved_all = std::exchange(alone, {}).empty();
         if (now >= tolerance) continue;
         if (!balance) return true;
         report.imbalance = imbalance();
         if (report.imbalance <= balanced) return true;
+        if (report.imbalance < min_progress * std::exchange(imbalance_before, report.imbalance)) alone = few_unbalanced(balanced);
+        if (!alone.empty()) continue;
+        imbalance_before = HUGE_VAL;
         if (sufficient == 0.0) return false;  // nothing that is left moves anything
-        sufficient = slope > 0.0 ? square(sharpening) * sufficient : 0.0;
+        sufficient = slope > 0.0 || !moved_all ? square(sharpening) * sufficient : 0.0;
     }
     return false;
 }

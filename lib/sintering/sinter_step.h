@@ -102,7 +102,10 @@ class SinterStep {
     template <bool limited, typename Real>
     void forces(TangentSolver<Real>& solver, const Motion& motion, bool secant);
     /// Largest unbalanced force of the last call of forces(), see StepReport.
+    std::vector<double> exerted() const;
     double imbalance() const;
+    std::vector<std::size_t> few_unbalanced(double limit) const;
+    void relax(const std::vector<std::size_t>& particles);
     void remove_drift(Motion& motion) const;
 
     Box box_;

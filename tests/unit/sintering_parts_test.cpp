@@ -214,6 +214,10 @@ TEST_CASE("the balance of forces: a particle's by what acts on it, and a cluster
     const Box box = cube(10.0, false);
     const ContactNetwork network(box, position, pairs);
     CHECK(max_imbalance(network, pairs, exerted, {}, left) < 1e-3);
+    left.displacement[3 * 100] = 0.02;  // of what its only contact exerts, 1
+    CHECK(unbalanced_particles(network, exerted, 0.01, left) == std::vector<std::size_t>{100});
+    CHECK(unbalanced_particles(network, exerted, 0.03, left).empty());
+    left.displacement[3 * 100] = 0.0;
     const std::vector<RigidClusters> coarse{{box, position, tied}};
     CHECK(std::abs(max_imbalance(network, pairs, exerted, coarse, left) - 1.0) < 1e-12);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "sintering/few_particles.h"
 #include "sintering/tangent_solver.h"
 
 using namespace kiln;
@@ -110,6 +111,38 @@ TEST_CASE_TEMPLATE("a solve finds the motion whose forces, summed up pair by pai
         CHECK(missing<Real>(sample, coarse, free.asDiagonal(), goal, helped) < 5.0 * goal);
         CHECK(helped.iterations < 500);
     }
+}
+
+TEST_CASE("few particles and three rings of neighbours find their motion, and all others stay where they are") {
+    const Sample sample(5000, 0.035);
+    const std::vector<std::size_t> particles{17, 2500, 4000};
+    std::vector<int> distance(sample.position.size(), 9);
+    for (const std::size_t row : particles) distance[row] = 0;
+    for (int ring = 0; ring < 3; ++ring)
+        for (const Pair& pair : sample.pairs) {
+            int& i = distance[static_cast<std::size_t>(pair.i)];
+            int& j = distance[static_cast<std::size_t>(pair.j)];
+            j = i == ring ? std::min(j, ring + 1) : j;
+            i = j == ring ? std::min(i, ring + 1) : i;
+        }
+    const auto moving = std::ranges::count_if(distance, [](int away) { return away <= 3; });
+    REQUIRE(moving > 50);
+    REQUIRE(moving < 1000);
+    Motion motion = any_motion(sample.position.size(), 2);
+    motion.strain.setZero();
+    for (std::size_t k = 0; k < motion.displacement.size(); ++k)
+        if (distance[k / 3] > 3) motion.displacement[k] = 0.0;
+    const Motion forces = forces_of(sample, motion);
+    const ContactNetwork network(sample.box, sample.position, sample.pairs);
+    linalg::EdgeStiffness<float> springs(network.pair.size());
+    fill(springs, network, sample);
+    Motion found = any_motion(sample.position.size(), 3);
+    relax_few(network, [&](std::size_t entry) { return springs.spring(entry).block(); }, particles, forces, found);
+    CHECK(found.strain.isZero(0.0));
+    for (std::size_t k = 0; k < found.displacement.size(); ++k)
+        if (distance[k / 3] > 3) CHECK(found.displacement[k] == 0.0);
+    add(network, -1.0, motion, found);
+    CHECK(std::sqrt(dot(network, found, forces_of(sample, found)) / dot(network, motion, forces)) < 0.06);
 }
 
 TEST_CASE("in a box smaller than its particles a particle's own image resists strains") {

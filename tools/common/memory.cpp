@@ -15,10 +15,10 @@ namespace kiln::cli {
 
 void set_up_memory() {
 #ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // bytes; the largest that glibc takes
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
-    mallopt(M_TOP_PAD, 64 << 20);  // address space ahead of use, so that large pages fit in
-    mallopt(M_ARENA_MAX, 1);  // a heap for each thread takes an eighth more memory and saves no time
+    mallopt(M_MMAP_MAX, 0);         // arrays come from the heap, however large
+    mallopt(M_TRIM_THRESHOLD, -1);  // which never shrinks
+    mallopt(M_TOP_PAD, 64 << 20);   // bytes of address space ahead of use, so that large pages fit in
+    mallopt(M_ARENA_MAX, 1);        // a heap for each thread takes an eighth more memory and saves no time
 #endif
 }
 
