@@ -229,32 +229,26 @@ void SinterStep::forces(const Motion& motion, bool secant) {
     if (!std::isfinite(work_)) throw Error("a step of sintering meets a force that is not a finite number");
 }
 
-/// Size of each pair's force. Of a pair that touches for a part of the step the whole sintering force: the part may be next to
-/// nothing.
-std::vector<double> SinterStep::exerted() const {
-    std::vector<double> exerted(step_.size());
-    network_.for_chunks([&](std::size_t chunk) {
-        network_.for_owned(chunk, [&](std::size_t entry) {
-            const auto row = static_cast<std::size_t>(network_.pair[entry]);
-            exerted[row] = step_[row].force + resisting_[entry];
-        });
-    });
-    return exerted;
-}
-
-double SinterStep::imbalance() const {
-    const std::vector<double> exerted = this->exerted();
-    Vec3 on_box = network_.sum_chunks<Vec3>(pressure_volume_.cwiseAbs(), [&](std::size_t chunk) {
+/// Of a pair that touches for a part of the step the whole sintering force counts: the part may be next to nothing.
+SinterStep::Exerted SinterStep::exerted() const {
+    Exerted result{std::vector<double>(step_.size())};
+    result.on_box = network_.sum_chunks<Vec3>(pressure_volume_.cwiseAbs(), [&](std::size_t chunk) {
         Vec3 part = Vec3::Zero();
         network_.for_owned(chunk, [&](std::size_t entry) {
             const auto row = static_cast<std::size_t>(network_.pair[entry]);
-            part += exerted[row] * entries_[entry].normal.cwiseProduct(branch_[row]).cwiseAbs();
+            result.by_pair[row] = step_[row].force + resisting_[entry];
+            part += result.by_pair[row] * entries_[entry].normal.cwiseProduct(branch_[row]).cwiseAbs();
         });
         return part;
     });
+    return result;
+}
+
+double SinterStep::imbalance() const {
+    const Exerted exerted = this->exerted();
     // On the box: what its axes share out among those that strain together.
-    on_box = settings_.allowed_strain.cwiseAbs() * on_box;
-    double worst = max_imbalance(network_, pairs_, exerted, coarse_, unbalanced_);
+    const Vec3 on_box = settings_.allowed_strain.cwiseAbs() * exerted.on_box;
+    double worst = max_imbalance(network_, pairs_, exerted.by_pair, coarse_, unbalanced_);
     const auto judge_box = [&](const Vec3& left) {
         for (int axis = 0; axis < 3; ++axis)
             if (left[axis] != 0.0) worst = std::max(worst, std::abs(left[axis]) / on_box[axis]);
@@ -268,7 +262,7 @@ double SinterStep::imbalance() const {
 /// The particles that are out of balance by more than the limit, if they are few.
 std::vector<std::size_t> SinterStep::few_unbalanced(double limit) const {
     if (!coarse_.empty()) return {};  // clusters may be out of balance as well
-    std::vector<std::size_t> particles = unbalanced_particles(network_, exerted(), limit, unbalanced_);
+    std::vector<std::size_t> particles = unbalanced_particles(network_, exerted().by_pair, limit, unbalanced_);
     if (static_cast<double>(particles.size()) > few * static_cast<double>(network_.particles())) particles.clear();
     return particles;
 }
@@ -309,20 +303,21 @@ bool SinterStep::newton(double tolerance, bool balance, Motion& motion, StepRepo
     double sufficient = square(linear_fraction * tolerance);  // square of the error that linear solves may leave, over the work
     double closeness = 1.0, foretold = HUGE_VAL, imbalance_before = HUGE_VAL;
     std::vector<std::size_t> alone;  // out of balance: only these and their neighbours move
+    // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are required.
+    const auto done = [&](const linalg::CgProgress& progress) {
+        throw_if_stopped(settings_.stop);
+        const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
+        const double goal = std::clamp(closeness * size, min_linear, max_linear);
+        return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||
+               progress.iterations >= max_conjugate_gradients;
+    };
     forces(motion, true);
     for (int iteration = 0; iteration < max_newton; ++iteration) {
         linalg::CgProgress linear;
         if (alone.empty())
             linear = std::visit([&](auto& solver) {
                 solver->factorise(branch_);
-                // No more digits than the next iteration keeps, whose error is about the square of this one's, or than are required.
-                return solver->solve(settings_.allowed_strain, unbalanced_, direction_, [&](const linalg::CgProgress& progress) {
-                    throw_if_stopped(settings_.stop);
-                    const double size = work_ > 0.0 ? std::sqrt(progress.energy / work_) : 1.0;
-                    const double goal = std::clamp(closeness * size, min_linear, max_linear);
-                    return progress.error2 <= std::max(square(goal) * progress.energy, sufficient * work_) ||
-                           progress.iterations >= max_conjugate_gradients;
-                });
+                return solver->solve(settings_.allowed_strain, unbalanced_, direction_, done);
             }, solver_);
         else
             relax(alone);

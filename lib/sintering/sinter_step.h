@@ -102,7 +102,12 @@ class SinterStep {
     template <bool limited, typename Real>
     void forces(TangentSolver<Real>& solver, const Motion& motion, bool secant);
     /// Largest unbalanced force of the last call of forces(), see StepReport.
-    std::vector<double> exerted() const;
+    /// Size of the force of each pair, and what they do to the box if all add up.
+    struct Exerted {
+        std::vector<double> by_pair;
+        Vec3 on_box = Vec3::Zero();
+    };
+    Exerted exerted() const;
     double imbalance() const;
     std::vector<std::size_t> few_unbalanced(double limit) const;
     void relax(const std::vector<std::size_t>& particles);
