@@ -22,7 +22,8 @@ MEMORY = 1 << 30  # bytes of address space; the streams have 2 to 20 kB
 SENTENCE = re.compile(r"^(sinter|bondify|bend|analyze)( [a-z]+)?: [^\x00-\x1f]+$")
 # What may have no value: fits and means of too few things, what a state does not hold.
 NULLS = {"standard_error", "confidence_interval", "covariance", "standard_errors", "confidence_intervals", "r_squared", "aicc",
-         "aic", "confidence", "prediction", "relative_density", "mean_diameter", "mean_length", "mean_overlap_ratio",
+         "aic", "rank", "aicc_difference", "confidence", "prediction", "relative_density", "mean_diameter", "mean_length",
+         "mean_overlap_ratio",
          "tensile_strength", "shear_strength", "temperature", "limited_percent", "calibrated_to",
          "dense_modulus_error", "dense_modulus_interval"}
 FINITE = {"particles": ("position", "radius"), "bonds": ("radius", "length", "volume", "force", "moment", "normal_force")}
