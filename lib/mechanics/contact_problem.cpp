@@ -184,9 +184,10 @@ void ContactProblem::join_old_fields(std::size_t most, std::size_t left) {
     contacts_.add_field(space_, space_.fields() - 1);
 }
 
+/// Fields are joined before: what the contacts remember is in the freedoms that are left.
 void ContactProblem::keep() {
-    contacts_.keep(freedoms_);
     if (contacts_.friction()) join_old_fields(fields_to_begin_with, fields_to_begin_with);
+    contacts_.keep(freedoms_);
 }
 
 void ContactProblem::soften(std::size_t bond, double share, const PairContact& ends) {
