@@ -125,7 +125,7 @@ Equilibrium ContactProblem::search(const PunchLoad& load, double tolerance) {
     Equilibrium state;
     Eigen::VectorXd before;  // freedoms before the last field was added; empty if none was
     double before_residual = 0.0;
-    const bool remembers = contacts_.friction();  // the equilibrium that was kept
+    const bool remembers = contacts_.friction();  // an equilibrium, in the freedoms that it had
     if (!softened_ && !remembers) join_old_fields(fields_to_begin_with, fields_to_begin_with);
     while (true) {
         const bool settled = settle(load, tolerance);
@@ -182,12 +182,6 @@ void ContactProblem::join_old_fields(std::size_t most, std::size_t left) {
     freedoms_[freedoms_.size() - 1] = unit;
     contacts_.remove_fields(first, last);
     contacts_.add_field(space_, space_.fields() - 1);
-}
-
-/// Fields are joined before: what the contacts remember is in the freedoms that are left.
-void ContactProblem::keep() {
-    if (contacts_.friction()) join_old_fields(fields_to_begin_with, fields_to_begin_with);
-    contacts_.keep(freedoms_);
 }
 
 void ContactProblem::soften(std::size_t bond, double share, const PairContact& ends) {

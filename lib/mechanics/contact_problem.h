@@ -57,7 +57,7 @@ class ContactProblem {
     Equilibrium relax(double force, double tolerance) { return search({force, true}, tolerance); }
 
     /// The last equilibrium counts as gone through: friction of those to come starts from there.
-    void keep();
+    void keep() { contacts_.keep(freedoms_); }
 
     /// The punch and with it all force is gone; loading begins anew.
     void release();
