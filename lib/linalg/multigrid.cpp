@@ -24,7 +24,7 @@ struct Smoothing {
 };
 constexpr Smoothing finest_smoothing{3, 0.1}, coarse_smoothing{2, 0.2};
 constexpr int power_steps = 10;
-constexpr double same_image = 1e-6;   // of a spring's length, by which its ends miss it: rounding, or else the period
+constexpr double same_image = 1e-6;  // of a spring's length, by which its ends miss it: rounding, or else the period
 constexpr double power_margin = 1.1;  // the power iteration ends below the largest eigenvalue
 
 std::size_t at(std::int64_t index) { return static_cast<std::size_t>(index); }

@@ -51,9 +51,8 @@ double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs,
     if (!(particles.sum > 0.0)) return 0.0;
     const double least = particles.least();
     double worst = worst_of(left, particles.on, least);
-    std::vector<double> scale;
     for (const RigidClusters& clusters : coarse) {
-        scale.assign(clusters.nodes(), 0.0);
+        std::vector<double> scale(clusters.nodes(), 0.0);
         for (const RigidClusters::NodePair& pair : clusters.node_pairs(pairs)) {
             if (pair.pair.i == pair.pair.j) continue;
             scale[static_cast<std::size_t>(pair.pair.i)] += exerted[pair.row];
@@ -67,9 +66,10 @@ double max_imbalance(const ContactNetwork& network, std::span<const Pair> pairs,
 std::vector<std::size_t> unbalanced_particles(const ContactNetwork& network, std::span<const double> exerted, double limit,
                                               const Motion& left) {
     const Exerted particles = exerted_on_particles(network, exerted);
+    const double least = particles.least();
     std::vector<std::size_t> unbalanced;
     for (std::size_t row = 0; row < particles.on.size(); ++row)
-        if (size_of(left, row) > limit * std::max(particles.on[row], particles.least())) unbalanced.push_back(row);
+        if (size_of(left, row) > limit * std::max(particles.on[row], least)) unbalanced.push_back(row);
     return unbalanced;
 }
 

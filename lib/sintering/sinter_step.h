@@ -101,13 +101,13 @@ class SinterStep {
     void forces(const Motion& motion, bool secant);
     template <bool limited, typename Real>
     void forces(TangentSolver<Real>& solver, const Motion& motion, bool secant);
-    /// Largest unbalanced force of the last call of forces(), see StepReport.
     /// Size of the force of each pair, and what they do to the box if all add up.
     struct Exerted {
         std::vector<double> by_pair;
         Vec3 on_box = Vec3::Zero();
     };
     Exerted exerted() const;
+    /// Largest unbalanced force of the last call of forces(), see StepReport.
     double imbalance() const;
     std::vector<std::size_t> few_unbalanced(double limit) const;
     void relax(const std::vector<std::size_t>& particles);
